@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { TEXT = 64, MOST_TEXTS = 1 << 20 };
+enum { TEXT = 64, MOST_TEXTS = 1 << 20, NAME_SIZE = 1024 };
 
 /// Texts of a dataset or an attribute, each cut where it is longer than any name.
 struct texts {
@@ -250,6 +250,29 @@ static uint32_t find_place(const struct structure *structure, int64_t particle) 
     return place < structure->atoms ? (uint32_t)place : UINT32_MAX;
 }
 
+/// Whether bonds are of the group of particles that is read: if they say of which one.
+static bool are_bonds_of(hid_t connectivity, hid_t group) {
+    char own[NAME_SIZE] = "", wanted[NAME_SIZE] = "";
+    hobj_ref_t reference;
+    const hid_t attribute =
+        H5Lexists(connectivity, "bonds", H5P_DEFAULT) > 0 &&
+                H5Aexists_by_name(connectivity, "bonds", "particles_group", H5P_DEFAULT) > 0
+            ? H5Aopen_by_name(connectivity, "bonds", "particles_group", H5P_DEFAULT, H5P_DEFAULT)
+            : -1;
+    if (attribute < 0)
+        return true;
+    const hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    const bool told = H5Tequal(type, H5T_STD_REF_OBJ) > 0 &&
+                      H5Sget_simple_extent_npoints(space) == 1 &&
+                      H5Aread(attribute, H5T_STD_REF_OBJ, &reference) >= 0 &&
+                      H5Rget_name(connectivity, H5R_OBJECT, &reference, wanted, NAME_SIZE) > 0 &&
+                      H5Iget_name(group, own, NAME_SIZE) > 0;
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return !told || strcmp(own, wanted) == 0;
+}
+
 static enum status read_bonds(const struct h5md_file *h5md, struct trajectory *trajectory,
                               hid_t connectivity) {
     enum status status;
@@ -317,7 +340,8 @@ enum status mf_h5md_topology_bonds(const struct h5md_file *h5md, struct trajecto
         trajectory->structure.has_molecules ? -1 : open_path(h5md->file, connectivity);
     if (bonds < 0)
         return STATUS_OK;
-    const enum status status = read_bonds(h5md, trajectory, bonds);
+    const enum status status =
+        are_bonds_of(bonds, h5md->group) ? read_bonds(h5md, trajectory, bonds) : STATUS_OK;
     H5Gclose(bonds);
     return status;
 }

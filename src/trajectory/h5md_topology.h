@@ -14,6 +14,7 @@ enum status mf_h5md_topology_read(const struct h5md_file *h5md,
 
 /// The same of bonds, where no topology tells of molecules: these are what bonds join. The atoms
 /// stand in the order of their ids if there are ids, which bonds are then told by, or else by
-/// places from 0 on. Fails: BAD_INPUT, NO_MEMORY. Tested: test_topology_h5md.
+/// places from 0 on. Those that say that they are of another group of particles are none. Fails:
+/// BAD_INPUT, NO_MEMORY. Tested: test_topology_h5md.
 enum status mf_h5md_topology_bonds(const struct h5md_file *h5md,
                                    struct trajectory *trajectory) MUST_USE;

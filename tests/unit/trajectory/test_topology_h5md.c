@@ -180,6 +180,38 @@ static void test_h5md_has_bonds_of_ids(void **state) {
     mf_trajectory_close(&trajectory);
 }
 
+/// Bonds of a group are not those of another one with as many particles.
+static void test_h5md_has_bonds_of_its_own_group(void **state) {
+    static const int64_t bonds[1][2] = {{0, 1}};
+    static const double position[ATOMS][3] = {{0}};
+    for (int other = 0; other < 2; other++) {
+        hobj_ref_t reference;
+        begin_file(state);
+        const hid_t particles = H5Gopen(file, "particles", H5P_DEFAULT),
+                    group = make_group(particles, "other"),
+                    connectivity = make_group(file, "connectivity"), space = H5Screate(H5S_SCALAR);
+        put(group, "position", H5T_NATIVE_DOUBLE, 2, (const hsize_t[]){ATOMS, 3}, position);
+        put(connectivity, "bonds", H5T_NATIVE_INT64, 2, (const hsize_t[]){1, 2}, bonds);
+        const hid_t dataset = H5Dopen(connectivity, "bonds", H5P_DEFAULT),
+                    attribute = H5Acreate(dataset, "particles_group", H5T_STD_REF_OBJ, space,
+                                          H5P_DEFAULT, H5P_DEFAULT);
+        assert_true(H5Rcreate(&reference, file, "particles/other", H5R_OBJECT, -1) >= 0);
+        assert_true(H5Awrite(attribute, H5T_STD_REF_OBJ, &reference) >= 0);
+        H5Aclose(attribute);
+        H5Dclose(dataset);
+        H5Sclose(space);
+        H5Gclose(connectivity);
+        H5Gclose(group);
+        H5Gclose(particles);
+        H5Fclose(file);
+        assert_ok(mf_trajectory_open(
+            &trajectory, path,
+            &(struct trajectory_options){.units = "nm-ps", .group = other ? "other" : "system"}));
+        assert_int_equal(trajectory.structure.has_molecules, other);
+        mf_trajectory_close(&trajectory);
+    }
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -189,6 +221,7 @@ int main(void) {
         TEST(test_h5md_says_so_when_its_topology_is_of_others),
         TEST(test_h5md_has_molecules_of_bonds),
         TEST(test_h5md_has_bonds_of_ids),
+        TEST(test_h5md_has_bonds_of_its_own_group),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
