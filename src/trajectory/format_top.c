@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum section { OTHERS, ATOM_TYPES, MOLECULE_TYPE, ATOMS, MOLECULES };
 static const char *const names[] = {[ATOM_TYPES] = "atomtypes",
@@ -151,7 +152,7 @@ static enum status begin_section(struct reading *reading, const struct gromacs_l
         return mf_gromacs_fail(line, "expected \"[ name ]\"");
     reading->section = OTHERS;
     for (int k = 1; k < (int)(sizeof names / sizeof *names); k++)
-        if (strcmp(name, names[k]) == 0)
+        if (strcasecmp(name, names[k]) == 0) // as GROMACS has it
             reading->section = (enum section)k;
     return STATUS_OK;
 }

@@ -64,6 +64,19 @@ static void test_topology_has_names_masses_and_molecules(void **state) {
     mf_trajectory_close(&trajectory);
 }
 
+/// GROMACS does not look at the case of directives: the second kind is not a part of the first.
+static void test_topology_has_sections_of_any_case(void **state) {
+    assert_ok(try(state, "a.top",
+                  "[ defaults ]\n1 2\n[ AtomTypes ]\nA 0 10 0 A 1 1\n[ moleculetype ]\nONE 1\n"
+                  "[ atoms ]\n1 A 1 ONE A 1\n[ Moleculetype ]\nTWO 1\n[ atoms ]\n"
+                  "1 A 1 TWO B 1\n[ MOLECULES ]\nTWO 1\nONE 2\n"));
+    assert_int_equal(trajectory.structure.atoms, 3);
+    assert_atom(0, "B", "TWO", 10, 0);
+    assert_atom(1, "A", "ONE", 10, 1);
+    assert_atom(2, "A", "ONE", 10, 2);
+    mf_trajectory_close(&trajectory);
+}
+
 static void test_topology_is_refused_with_its_line(void **state) {
     assert_fails(try(state, "a.top", "[ defaults ]\n#include \"no.itp\"\n"), STATUS_BAD_INPUT,
                  "a.top:2: #include: there is no file");
@@ -112,6 +125,7 @@ static void test_psf_has_names_residues_and_masses(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_topology_has_names_masses_and_molecules),
+        TEST(test_topology_has_sections_of_any_case),
         TEST(test_topology_is_refused_with_its_line),
         TEST(test_psf_has_names_residues_and_masses),
     };
