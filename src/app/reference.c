@@ -81,7 +81,8 @@ static const struct look markdown = {
 
 // Man pages ---------------------------------------------------------------------------------------
 
-/// With what would be a command of roff spelled out; a `-` stays one that can be copied.
+/// With what would be a command of roff spelled out; a `-` stays one that can be copied, and a line
+/// may end after a `|`.
 static void write_man(FILE *stream, const char *text) {
     if (*text == '.' || *text == '\'')
         fprintf(stream, "\\&");
@@ -95,6 +96,9 @@ static void write_man(FILE *stream, const char *text) {
             break;
         case '"':
             fprintf(stream, "\\(dq");
+            break;
+        case '|':
+            fprintf(stream, "|\\:");
             break;
         default:
             fputc(*text, stream);

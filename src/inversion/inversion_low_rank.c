@@ -100,7 +100,7 @@ static double find_inverse_of_large(double h, double ratio) {
     const double sum = h + 1 - ratio;
     if (h <= pow(1 + sqrt(ratio), 2))
         return 1;
-    const double large = (sum + sqrt(sum * sum - 4 * h)) / 2, above = large - 1;
+    const double large = (sum + sqrt(fmax(0, sum * sum - 4 * h))) / 2, above = large - 1;
     const double share = (1 - ratio / (above * above)) / (1 + ratio / above);
     return (share * large + 1 - share) / (share * large * large + 1 - share);
 }

@@ -180,7 +180,11 @@ static enum status draw_figure(const char *folder, const char *plots, const stru
 /// The figure of an observable; that without a script of its own is called after it.
 static enum status draw_observable(const char *folder, const char *plots,
                                    const struct observable *observable, size_t *count) {
-    if (observable->figure == NULL || !has_files(folder, observable->files))
+    if (observable->figure == NULL)
+        return STATUS_OK;
+    // What else it writes may be left out.
+    const char *const first[] = {observable->files[0], NULL};
+    if (!has_files(folder, first))
         return STATUS_OK;
     // It shows the box of the settings, which the folder of a state of a fit has not.
     static const char *const settings[] = {"used.json", NULL};

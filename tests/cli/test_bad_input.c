@@ -365,18 +365,19 @@ static void test_fit_tells_of_all_faults_at_once(void **state) {
 
 /// Results of earlier versions have all settings of their time.
 static void test_keys_of_earlier_versions_may_say_what_is_so_now(void **state) {
-    static const char wrong[] = "\"samples\": 8, \"damping\": 0.5, \"strength\": 1, \"depth\": 7";
+    static const char wrong[] = "\"samples\": 8, \"ridge\": 0.5, \"strength\": 1, \"depth\": 7";
     static struct run_program_result result;
     small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
-    small_inputs_write(*state, "input.json", small_inputs_run, "\"samples\": 8",
-                       "\"samples\": 8, \"damping\": 1, \"strength\": 0, \"asynchronous\": \"no\"");
+    small_inputs_write(
+        *state, "input.json", small_inputs_run, "\"samples\": 8",
+        "\"samples\": 8, \"ridge\": 0.35, \"strength\": 0, \"asynchronous\": \"no\"");
     RUN_PROGRAM(&result, "fit", "input.json", "--explain");
     run_program_assert_code(&result, 0);
     small_inputs_write(*state, "input.json", small_inputs_run, "\"samples\": 8", wrong);
     RUN_PROGRAM(&result, "fit", "input.json");
     run_program_assert_refused(
         &result, ".", "two keys of earlier versions", 1,
-        (const char *const[]){"input.json: no longer keys: method.strength, method.damping; leave "
+        (const char *const[]){"input.json: no longer keys: method.strength, method.ridge; leave "
                               "them out",
                               NULL});
 }
