@@ -42,7 +42,8 @@ def test_files_of_the_repository_are_valid(schema):
             continue
     assert len(read) > 60
     for path, content in read:
-        assert fault(schema, content) == "", path
+        if path.name != "init.json":  # an initial file of particles is no run file
+            assert fault(schema, content) == "", path
 
 
 def test_blocks_of_the_pages_are_valid(schema):
