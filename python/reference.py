@@ -18,11 +18,13 @@ GROUPS = (
     ("What is done", ("measure", "fit", "simulate", "open")),
     ("What goes in", ("Frames", "Scene", "law")),
     ("What comes out", ("Result", "Table", "Curves")),
-    ("Driven by the caller", ("Simulation", "Rdf", "Means", "FORCE", "Problem", "State", "Curve",
-                              "Value", "Optimiser")),
+    ("Driven by the caller", ("Simulation", "Rdf", "Means", "FORCE", "OBSERVABLE", "Problem", "State",
+                              "Curve", "Value", "Optimiser")),
     ("Errors and warnings", ("Error", "InputError", "FileError", "UnstableError", "MesofitWarning",
                              "UnconvergedWarning", "InterruptedWarning")),
 )
+
+FUNCTION_TYPES = ("FORCE", "OBSERVABLE")  # of compiled functions
 
 
 def signature(name: str, thing: Any) -> str:
@@ -76,7 +78,7 @@ def entry(name: str) -> str:
     plain = not inspect.isclass(thing) or issubclass(thing, (BaseException, tuple))
     if inspect.isfunction(thing):
         heading = signature(name, thing)
-    elif plain or name in ("Result", "Table", "Curves", "FORCE"):
+    elif plain or name in ("Result", "Table", "Curves", *FUNCTION_TYPES):
         heading = name
     else:
         heading = signature(name, thing.__init__)
@@ -84,7 +86,7 @@ def entry(name: str) -> str:
     if heading != name:
         text.append(f"```python\n{heading}\n```\n")
     text.append(render(thing) + "\n")
-    if inspect.isclass(thing) and not plain and name != "FORCE":
+    if inspect.isclass(thing) and not plain and name not in FUNCTION_TYPES:
         for member, value in members(thing):
             called = member if isinstance(value, property) else signature(member, value)
             text.append(f"#### `.{' '.join(called.split())}`\n\n{render(value)}\n")

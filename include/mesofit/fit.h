@@ -65,7 +65,8 @@ MESOFIT_API struct mesofit_fit_options mesofit_fit_options_default(void);
  *  NO_MEMORY. */
 MESOFIT_API struct mesofit_fit *mesofit_fit_create(const struct mesofit_fit_options *options);
 
-/** The same from the text of a run file (JSON), in which files may be tables in memory. */
+/** The same from the text of a run file (JSON), in which files may be tables in memory; of one
+ * state: several are fitted by mesofit_run_words (mesofit/run.h). */
 MESOFIT_API struct mesofit_fit *mesofit_fit_parse(const char *text,
                                                   const struct mesofit_table *tables,
                                                   size_t table_count, int threads,

@@ -61,14 +61,43 @@ struct mesofit_trajectory {
     void *context;
 };
 
-/** What stands for files of these names, in the words and in what they name. Borrowed for the call
- *  that gets it. */
+/** An observable of the caller's, asked at each sample of "simulate" by the thread that carries out
+ *  the run. All is in the units of the scene, by the number of the particle.
+ *  @param position  in the box, from 0 to its edges; shape [count, dimensions] [nm in nm and ps,
+ *                   lambda without units]
+ *  @param velocity  at the end of the step; shape [count, dimensions] [nm/ps; lambda/tau]; NULL for
+ * Monte Carlo, which has none
+ *  @param type      shape [count]: 0, 1, … in the order of the scene's types
+ *  @param edge      of the box, shape [dimensions] [as positions]
+ *  @param[out] values  shape [room]
+ *  @return how many values it has, the same in every sample. If there are more than `room` none
+ *  need be written: it is asked once more for the same sample, with room enough. Below 0 if it
+ *  failed: the run ends with BAD_INPUT and without results, and can be resumed from its last
+ *  checkpoint. */
+typedef ptrdiff_t mesofit_observable(void *context, size_t count, int dimensions,
+                                     const double *position, const double *velocity,
+                                     const int32_t *type, const double *edge, size_t room,
+                                     double *values);
+
+/** An observable with the name of its table, of letters, digits, "_" and "-": rows of "index",
+ *  "value", the mean over the samples (NaN if one was not finite), and "error", its standard error,
+ *  which sees that samples are correlated. */
+struct mesofit_named_observable {
+    const char *name;
+    mesofit_observable *function;
+    void *context;
+};
+
+/** What stands for files of these names, in the words and in what they name, and what a simulation
+ *  measures besides. Borrowed for the call that gets it. */
 struct mesofit_inputs {
     const struct mesofit_text *texts; /**< shape [text_count] */
     size_t text_count;
     const struct mesofit_table *tables; /**< shape [table_count] */
     size_t table_count;
-    const struct mesofit_trajectory *trajectory; /**< or NULL */
+    const struct mesofit_trajectory *trajectory;        /**< or NULL */
+    const struct mesofit_named_observable *observables; /**< shape [observable_count], at most 16 */
+    size_t observable_count;
 };
 
 /** Do what the program does with these words: "measure", "fit", "simulate" or "export", then files

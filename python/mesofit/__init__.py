@@ -15,7 +15,7 @@ from ._errors import (
     UnstableError,
 )
 from ._inputs import Frames
-from ._library import FORCE, version as __version__
+from ._library import FORCE, OBSERVABLE, version as __version__
 from ._problem import Curve, Optimiser, Problem, State, Value
 from ._result import Result, open
 from ._simulation import Means, Rdf, Simulation
@@ -24,7 +24,7 @@ from ._work import Scene, fit, law, measure, simulate
 
 __all__ = [
     "Curve", "Curves", "Error", "FORCE", "FileError", "Frames", "InputError",
-    "InterruptedWarning", "Means", "MesofitWarning", "Optimiser", "Problem", "Rdf", "Result",
-    "Scene", "Simulation", "State", "Table", "UnconvergedWarning", "UnstableError", "Value",
+    "InterruptedWarning", "Means", "MesofitWarning", "OBSERVABLE", "Optimiser", "Problem", "Rdf",
+    "Result", "Scene", "Simulation", "State", "Table", "UnconvergedWarning", "UnstableError", "Value",
     "__version__", "fit", "law", "measure", "open", "simulate",
 ]

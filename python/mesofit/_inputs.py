@@ -71,6 +71,7 @@ class Memory:
         self.texts: dict[str, str] = {}
         self.tables: list[tuple[str, Array]] = []
         self.frames: Frames | None = None
+        self.observables: Any = None  # an Observables
 
     def add_json(self, name: str, content: Any) -> str:
         """Lend an object as a text of this name, and the arrays in it as tables beside."""
@@ -119,6 +120,9 @@ class Memory:
         if self.frames is not None:
             self._trajectory = self.frames._lend()
             inputs.trajectory = ctypes.pointer(self._trajectory)
+        if self.observables is not None:
+            own = self.observables.lend()
+            inputs.observables, inputs.observable_count = own, len(own)
         return inputs
 
 

@@ -12,8 +12,8 @@ import ctypes
 import os
 import sys
 from ctypes import (
-    CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_int, c_int64, c_size_t, c_uint32,
-    c_uint64, c_void_p,
+    CFUNCTYPE, POINTER, Structure, c_char, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t,
+    c_ssize_t, c_uint32, c_uint64, c_void_p,
 )
 from pathlib import Path
 from typing import Any
@@ -35,6 +35,12 @@ FORCE = CFUNCTYPE(c_double, c_void_p, c_size_t, POINTER(c_uint32), POINTER(NUMBE
 FORCE.__doc__ = """Type of a compiled force for `Simulation.set_force`, as in mesofit/simulation.h:
 ``double force(void *context, size_t count, const uint32_t *ids, const double *const *positions,
 double *const *forces)``."""
+OBSERVABLE = CFUNCTYPE(c_ssize_t, c_void_p, c_size_t, c_int, NUMBERS, NUMBERS, POINTER(c_int32),
+                       NUMBERS, c_size_t, NUMBERS)
+OBSERVABLE.__doc__ = """Type of a compiled observable for `simulate`, as in mesofit/run.h:
+``ptrdiff_t observable(void *context, size_t count, int dimensions, const double *positions,
+const double *velocities, const int32_t *types, const double *box, size_t room, double *values)``.
+It returns how many values it has, and writes them if there is room."""
 FIT_PROGRESS = CFUNCTYPE(c_int, c_void_p, c_uint32, c_uint64, c_uint64)
 
 
@@ -61,9 +67,14 @@ class Trajectory(Structure):
                 ("read", FRAME_READER), ("context", c_void_p)]
 
 
+class NamedObservable(Structure):
+    _fields_ = [("name", c_char_p), ("function", OBSERVABLE), ("context", c_void_p)]
+
+
 class Inputs(Structure):
     _fields_ = [("texts", POINTER(Text)), ("text_count", c_size_t), ("tables", POINTER(Table)),
-                ("table_count", c_size_t), ("trajectory", POINTER(Trajectory))]
+                ("table_count", c_size_t), ("trajectory", POINTER(Trajectory)),
+                ("observables", POINTER(NamedObservable)), ("observable_count", c_size_t)]
 
 
 class RunProgress(Structure):
@@ -115,7 +126,7 @@ class Verification(Structure):
 #: Structs of the headers by their names there.
 STRUCTS = {
     "mesofit_table": Table, "mesofit_text": Text, "mesofit_frame": Frame,
-    "mesofit_trajectory": Trajectory, "mesofit_inputs": Inputs,
+    "mesofit_trajectory": Trajectory, "mesofit_named_observable": NamedObservable, "mesofit_inputs": Inputs,
     "mesofit_run_progress": RunProgress, "mesofit_columns": Columns, "mesofit_law": Law,
     "mesofit_scene": Scene, "mesofit_rdf_plan": RdfPlan, "mesofit_means": Means,
     "mesofit_fit_state": FitState, "mesofit_curve": Curve, "mesofit_verification": Verification,

@@ -134,8 +134,9 @@ def carry_out(words: Sequence[str], memory: Memory | None = None,
     run.look(shown)
     shown.end()
     outcome = run.outcome
-    if memory.frames is not None and memory.frames.fault is not None:
-        raise memory.frames.fault
+    for functions in (memory.frames, memory.observables):
+        if functions is not None and functions.fault is not None:
+            raise functions.fault
     if interrupts > 1:
         raise KeyboardInterrupt(outcome.message)
     if outcome.status not in (c.OK, c.UNCONVERGED, c.INTERRUPTED):

@@ -16,6 +16,7 @@ from . import _library as c
 from ._errors import InputError, said
 from ._library import Array
 from ._inputs import Frames, Memory, PathLike, from_universe, merge
+from ._observables import Observables
 from ._result import Result, _path
 from ._run import Folder, carry_out
 
@@ -149,7 +150,8 @@ def _carry_out(words: list[str], memory: Memory, folder: PathLike | None, resume
     return result
 
 
-def simulate(scene: Content, steps: int | None = None, *, folder: PathLike | None = None,
+def simulate(scene: Content, steps: int | None = None, *,
+             observables: Mapping[str, Any] | None = None, folder: PathLike | None = None,
              threads: int | None = None, seed: int | None = None, resume: bool = False,
              force: bool = False, progress: bool | None = None, **keys: Any) -> Result:
     """Run a scene and measure it, as `mesofit simulate` does.
@@ -160,6 +162,15 @@ def simulate(scene: Content, steps: int | None = None, *, folder: PathLike | Non
         What a scene file says, or its path.
     steps : int, optional
         Steps that are measured, in place of "samples" of "measure".
+    observables : dict of functions by the names of their tables, optional
+        ``function(positions, velocities, types, box)``, called at each sample: arrays of shape
+        (particles, dimensions), positions in the box; (particles,), types being 0, 1, … in the
+        order of the scene; (dimensions,), the edges. All in the units of the scene; velocities are
+        None for Monte Carlo. It returns a number or an array, always of the same size. The table of
+        its name has the mean of each "value" over the samples, NaN if one was not finite, and its
+        standard "error", which sees that samples are correlated. An array becomes rows, in C's
+        order. What it raises ends the run and is raised here, without results. At most 16; a
+        function of the type `OBSERVABLE`, or of numba, is called directly.
     folder : path, optional
         Of the results; else they go with what is returned.
     threads, seed, resume, force
@@ -195,6 +206,8 @@ def simulate(scene: Content, steps: int | None = None, *, folder: PathLike | Non
             keys = merge(keys, {"measure": {"samples": _samples(measure, steps)}})
     words = ["simulate", _lend(content, keys, "scene", memory)]
     words += _options(threads=threads, seed=seed)
+    if observables is not None:
+        memory.observables = Observables(observables)
     return _carry_out(words, memory, folder, resume, force, progress)
 
 

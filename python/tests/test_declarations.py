@@ -123,4 +123,4 @@ def test_version_is_the_programs():
 def test_public_names_have_words():
     for name in mesofit.__all__:
         thing = getattr(mesofit, name)
-        assert name in ("__version__", "FORCE") or inspect.getdoc(thing), name
+        assert name in ("__version__", "FORCE", "OBSERVABLE") or inspect.getdoc(thing), name

@@ -37,8 +37,8 @@ def names(tmp_path, monkeypatch, fitted, simulated):
         signature.bind(*arguments, **keys)
         return fitted
 
-    def few_steps(scene, steps):
-        return simulate(scene, steps=100, measure={"equilibration": 10})
+    def few_steps(scene, steps, **keys):
+        return simulate(scene, steps=100, measure={"equilibration": 10}, **keys)
     monkeypatch.setattr(mesofit, "fit", fit)
     monkeypatch.setattr(mesofit, "simulate", few_steps)
     monkeypatch.setattr(mesofit.Simulation, "run", lambda self, steps, run=mesofit.Simulation.run:

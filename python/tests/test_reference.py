@@ -24,7 +24,7 @@ def callables():
             yield name, thing, thing
         elif inspect.isclass(thing) and thing.__module__.startswith("mesofit") and not issubclass(
                 thing, (tuple, BaseException)):
-            if name not in ("Result", "Table", "Curves", "FORCE"):  # those are made by others
+            if name not in ("Result", "Table", "Curves", "FORCE", "OBSERVABLE"):  # those are made by others
                 yield name, thing.__init__, thing
             for member, value in reference.members(thing):
                 if inspect.isfunction(value):

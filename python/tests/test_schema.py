@@ -42,7 +42,7 @@ def test_files_of_the_repository_are_valid(schema):
             continue
     assert len(read) > 60
     for path, content in read:
-        if path.name != "init.json":  # an initial file of particles is no run file
+        if "system" not in content:  # an initial file of a tutorial, which is a placement
             assert fault(schema, content) == "", path
 
 
@@ -68,6 +68,69 @@ def test_a_wrong_key_is_named(schema):
     assert "'bxo' was unexpected" in fault(schema, {**SCENE, "bxo": [4, 4, 4]})
     assert "'temprature' was unexpected" in fault(
         schema, {"target": {"rdf": {"file": "rdf.tsv"}}, "scene": {"density": 3, "temprature": 1}})
+
+
+@pytest.fixture
+def run():
+    return {"target": {"rdf": {"file": "rdf.tsv"}}, "scene": {"density": 3, "temperature": 1}}
+
+
+def members(schema, group, chief):
+    """Keys of each of a group, by its name, as an editor is told them."""
+    return {member["if"]["properties"][chief]["const"]: set(member["then"]["properties"])
+            for member in schema.schema["definitions"][group]["allOf"]}
+
+
+@pytest.mark.parametrize("group, chief", [
+    ("method", "name"), ("conservative", "law"), ("dissipative", "law"), ("dynamics", "integrator")])
+def test_keys_of_one_are_not_those_of_another(schema, group, chief):
+    """Beside what `mesofit describe` says of each."""
+    found = members(schema, group, chief)
+    enum = schema.schema["definitions"][group]["properties"][chief]["enum"]
+    assert len(found) >= 4 and sorted(found) == sorted(enum)
+    for name, keys in found.items():
+        if name == "none":
+            assert keys == {chief}
+            continue
+        said = subprocess.run([PROGRAM, "describe", name], capture_output=True, text=True).stdout
+        own = [part for part in re.split(r"(?m)^(?=[\w-]+ \()", said)
+               if part.startswith(f"{name} ({group}")]
+        assert len(own) == 1, said
+        assert set(re.findall(r"(?m)^  (\w+)", own[0])) == keys - {chief}, name
+
+
+def test_methods_share_few_keys(schema, run):
+    def with_method(**method):
+        return fault(schema, {**run, "method": method})
+    assert with_method(name="imc", precision=0.05) == with_method(name="genetic",
+                                                                   crossover=0.5) == ""
+    # One fault, of the method that is named.
+    assert with_method(name="imc", crossover=0.5) == (
+        "['method']: Additional properties are not allowed ('crossover' was unexpected)")
+    assert "['method', 'crossover']: 3 is greater" in with_method(name="genetic", crossover=3)
+    assert "'magic' is not one of ['auto', 'imc'" in with_method(name="magic")
+    assert "'name' is a required property" in with_method(crossover=0.5)
+
+
+def bad_runs():
+    """Each method with a key that only another one has."""
+    for name, key in (("auto", "population"), ("ibi", "population"), ("hnc", "population"),
+                      ("imc", "population"), ("genetic", "sampler"), ("cma-es", "sampler")):
+        yield f"{name}: {key}", {"name": name, key: 1}
+
+
+@pytest.mark.parametrize("method", dict(bad_runs()).values(), ids=dict(bad_runs()).keys())
+def test_keys_of_another_method_are_refused_by_both(schema, run_file, method):
+    bad = {**run_file, "target": {"rdf": {"file": "rdf.tsv"}}, "method": method}
+    assert "was unexpected" in fault(schema, bad)
+    with pytest.raises(mesofit.InputError, match="unknown key"):
+        mesofit.fit({**run_file, "method": method})
+
+
+def test_an_integrator_need_not_be_named(schema):
+    assert fault(schema, {**SCENE, "dynamics": {}}) == ""
+    assert "'friction' was unexpected" in fault(
+        schema, {**SCENE, "dynamics": {"integrator": "aboba", "friction": 1}})
 
 
 def objects(content, path=()):

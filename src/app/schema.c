@@ -296,19 +296,26 @@ static void write_topic(struct json_writer *writer, const struct topic *topic) {
 
 // Groups ------------------------------------------------------------------------------------------
 
-/// One of a group, of which the key `chief` says which it is.
+/// If the key `chief` says that it is this one of a group, then it has the keys of this one: an
+/// editor offers no others.
 static void write_member(struct json_writer *writer, const char *chief, const struct topic *topic) {
     mf_json_begin(writer, NULL);
-    mf_json_write_text(writer, "description", topic->summary);
-    mf_json_write_text(writer, "type", "object");
+    mf_json_begin(writer, "if");
     mf_json_write_texts(writer, "required", &chief, 1);
     mf_json_begin(writer, "properties");
     mf_json_begin(writer, chief);
     mf_json_write_text(writer, "const", topic->name);
+    for (int level = 0; level < 3; level++)
+        mf_json_end(writer);
+    mf_json_begin(writer, "then");
+    mf_json_write_text(writer, "description", topic->summary);
+    mf_json_begin(writer, "properties");
+    mf_json_begin(writer, chief); // whose value is said once, for all
     mf_json_end(writer);
     write_fields(writer, topic);
     mf_json_end(writer);
     close_keys(writer);
+    mf_json_end(writer);
     mf_json_end(writer);
 }
 
@@ -316,16 +323,38 @@ static bool is_of(const struct topic *topic, const char *group) {
     return strcmp(topic->group, group) == 0;
 }
 
+/// The key that says which of a group it is, with all that there are.
+static void write_chief(struct json_writer *writer, const char *chief,
+                        const struct topic *const *members, size_t count) {
+    const char *names[DESCRIBE_MAX_TOPICS];
+    for (size_t k = 0; k < count; k++)
+        names[k] = members[k]->name;
+    mf_json_write_text(writer, "type", "object");
+    // The integrator is chosen by what the scene has if it says none.
+    if (strcmp(chief, "integrator") != 0)
+        mf_json_write_texts(writer, "required", &chief, 1);
+    mf_json_begin(writer, "properties");
+    mf_json_begin(writer, chief);
+    mf_json_write_texts(writer, "enum", names, count);
+    mf_json_end(writer);
+    mf_json_end(writer);
+}
+
 static void write_chosen(struct json_writer *writer, const char *group, const char *chief,
                          const struct topic *topics, size_t count) {
     static const struct topic none = {.name = "none", .summary = "none"};
-    mf_json_begin(writer, group);
-    mf_json_begin_list(writer, "anyOf");
+    const struct topic *members[DESCRIBE_MAX_TOPICS];
+    size_t n = 0;
     if (strcmp(chief, "law") == 0)
-        write_member(writer, chief, &none);
-    for (size_t k = 0; k < count; k++)
+        members[n++] = &none;
+    for (size_t k = 0; k < count && n < DESCRIBE_MAX_TOPICS; k++)
         if (is_of(&topics[k], group))
-            write_member(writer, chief, &topics[k]);
+            members[n++] = &topics[k];
+    mf_json_begin(writer, group);
+    write_chief(writer, chief, members, n);
+    mf_json_begin_list(writer, "allOf");
+    for (size_t k = 0; k < n; k++)
+        write_member(writer, chief, members[k]);
     mf_json_end(writer);
     mf_json_end(writer);
 }

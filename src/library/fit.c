@@ -56,7 +56,10 @@ static enum status open_run(struct mesofit_fit **made, const char *file,
     fit->context = context;
     CHECK(mf_fit_file_parse(&fit->file, file, &options));
     if (fit->file.others > 0)
-        CHECK(mf_status_fail(STATUS_BAD_INPUT, "%s: states: the program alone fits several", file));
+        CHECK(mf_status_fail(STATUS_BAD_INPUT,
+                             "%s: states: a fit that is stepped has one; mesofit_run_words, "
+                             "mesofit.fit of Python, and the program fit several",
+                             file));
     if (own)
         CHECK(add_own_laws(fit, own));
     CHECK(mf_fit_check(&fit->file, file));

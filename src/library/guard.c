@@ -49,11 +49,22 @@ size_t mesofit_size_of(const char *name) {
     static const struct {
         const char *name;
         size_t size;
-    } sizes[] = {SIZE(mesofit_columns),      SIZE(mesofit_curve),      SIZE(mesofit_fit_options),
-                 SIZE(mesofit_fit_state),    SIZE(mesofit_frame),      SIZE(mesofit_inputs),
-                 SIZE(mesofit_law),          SIZE(mesofit_means),      SIZE(mesofit_rdf_plan),
-                 SIZE(mesofit_run_progress), SIZE(mesofit_scene),      SIZE(mesofit_table),
-                 SIZE(mesofit_text),         SIZE(mesofit_trajectory), SIZE(mesofit_verification)};
+    } sizes[] = {SIZE(mesofit_columns),
+                 SIZE(mesofit_curve),
+                 SIZE(mesofit_fit_options),
+                 SIZE(mesofit_fit_state),
+                 SIZE(mesofit_frame),
+                 SIZE(mesofit_inputs),
+                 SIZE(mesofit_named_observable),
+                 SIZE(mesofit_law),
+                 SIZE(mesofit_means),
+                 SIZE(mesofit_rdf_plan),
+                 SIZE(mesofit_run_progress),
+                 SIZE(mesofit_scene),
+                 SIZE(mesofit_table),
+                 SIZE(mesofit_text),
+                 SIZE(mesofit_trajectory),
+                 SIZE(mesofit_verification)};
 #undef SIZE
     for (size_t k = 0; name && k < sizeof sizes / sizeof *sizes; k++)
         if (strcmp(sizes[k].name, name) == 0)

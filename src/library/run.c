@@ -6,6 +6,7 @@
 #include "library/guard.h"
 #include "library/memory_files.h"
 #include "library/run_frames.h"
+#include "library/run_observables.h"
 #include "report/watcher.h"
 
 #include <math.h>
@@ -114,7 +115,8 @@ static bool damp(void *context, double *wanted) {
 static const struct command *const commands[] = {&mf_command_measure, &mf_command_fit,
                                                  &mf_command_export, &mf_command_simulate, NULL};
 
-static enum status carry_out(struct mesofit_run *run, size_t count, const char *const *words) {
+static enum status carry_out(struct mesofit_run *run, size_t count, const char *const *words,
+                             const struct caller_observables *callers) {
     const struct watcher watcher = {.context = run,
                                     .begin = begin,
                                     .report = report,
@@ -129,6 +131,10 @@ static enum status carry_out(struct mesofit_run *run, size_t count, const char *
     TRY(mf_command_parse(command, count - 1, words + 1, &line));
     line.options.quiet = line.options.no_figures = true;
     line.options.stop = &run->stop;
+    line.options.callers = callers;
+    if (callers->count > 0 && command != &mf_command_simulate)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes no observables of the caller",
+                              command->name);
     line.options.watcher = &watcher;
     return command->run(&line);
 }
@@ -146,12 +152,14 @@ static enum status run_words(struct mesofit_run *run, size_t count, const char *
     enum status status = STATUS_OK;
     struct memory_files memory_files = {0};
     struct run_frames frames = {0};
+    struct caller_observables callers = {0};
     TRY(check_words(count, words));
     CHECK(mf_memory_files_begin(&memory_files, inputs->texts, inputs->text_count, inputs->tables,
                                 inputs->table_count));
     if (inputs->trajectory)
         CHECK(mf_run_frames_begin(&frames, inputs->trajectory));
-    status = carry_out(run, count, words);
+    CHECK(mf_run_observables_begin(&callers, inputs->observables, inputs->observable_count));
+    status = carry_out(run, count, words, &callers);
 done:
     mf_run_frames_end(&frames);
     mf_memory_files_end(&memory_files);

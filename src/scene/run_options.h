@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+struct caller_observables;
 struct watcher;
 
 /// Options that all runs share, from the command line.
@@ -16,8 +17,10 @@ struct run_options {
     bool has_seed;
     uint64_t seed; ///< --seed, instead of the input file's
     bool quiet, resume;
-    bool force;                    ///< replace the results that are in the folder
-    bool no_figures;               ///< none are drawn in the folder
-    const atomic_bool *stop;       ///< ends the run as Ctrl-C does, or NULL; borrowed
+    bool force;              ///< replace the results that are in the folder
+    bool no_figures;         ///< none are drawn in the folder
+    const atomic_bool *stop; ///< ends the run as Ctrl-C does, or NULL; borrowed
+    /// What a simulation measures besides (observe/caller_observable.h), or NULL; borrowed.
+    const struct caller_observables *callers;
     const struct watcher *watcher; ///< who watches the run (report/watcher.h), or NULL; borrowed
 };

@@ -64,6 +64,8 @@ static enum status read_file(struct run *run, const char *file, const struct run
         status = mf_simulate_observables_read(&run->observables, &root, &run->scene.setup);
     mf_json_finish(&root);
     TRY(mf_json_close(document, status));
+    if (options->callers)
+        TRY(mf_simulate_observables_add(&run->observables, options->callers));
     if (options->has_seed)
         run->heading.seed = options->seed;
     run->scene.setup.seed = run->heading.seed;
@@ -85,6 +87,7 @@ static enum status keep_settings(struct run *run) {
     const enum status status = mf_run_folder_keep_settings(&run->folder, writer, &run->digest);
     mf_json_writer_free(writer);
     mf_scene_digest(&run->scene, &run->digest);
+    mf_simulate_observables_digest(&run->observables, &run->digest);
     return status;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/simulate_observables.h"
 
+#include "base/digest.h"
 #include "io/checkpoint.h"
 #include "observe/rdf_observable.h"
 
@@ -60,6 +61,33 @@ enum status mf_simulate_observables_read(struct simulate_observables *observable
     return STATUS_OK;
 }
 
+enum status mf_simulate_observables_add(struct simulate_observables *observables,
+                                        const struct caller_observables *callers) {
+    struct observable_use *use = observables->use;
+    TRY(mf_caller_observables_check(callers));
+    while (use->observable)
+        use++;
+    for (size_t k = 0; k < callers->count; k++, use++) {
+        struct caller_observable *own;
+        TRY_ARRAY(own, 1);
+        *own = callers->item[k];
+        *use = (struct observable_use){.observable = &mf_caller_observable, .settings = own};
+    }
+    return STATUS_OK;
+}
+
+/// The caller's function behind a use, or NULL.
+static const struct caller_observable *callers_own(const struct observable_use *use) {
+    return use->observable == &mf_caller_observable ? use->settings : NULL;
+}
+
+void mf_simulate_observables_digest(const struct simulate_observables *observables,
+                                    uint64_t *digest) {
+    for (const struct observable_use *use = observables->use; use->observable; use++)
+        if (callers_own(use))
+            mf_digest_add(digest, callers_own(use)->name, strlen(callers_own(use)->name) + 1);
+}
+
 void mf_simulate_observables_clear(struct simulate_observables *observables) {
     for (struct observable_use *use = observables->use; use->observable; use++) {
         if (use->state)
@@ -73,7 +101,7 @@ void mf_simulate_observables_clear(struct simulate_observables *observables) {
 void mf_simulate_observables_write_used(const struct simulate_observables *observables,
                                         struct json_writer *writer) {
     for (const struct observable_use *use = observables->use; use->observable; use++) {
-        if (use->settings == NULL)
+        if (use->observable->fields == NULL)
             continue;
         mf_json_begin(writer, use->observable->name);
         mf_json_write_fields(writer, use->observable->fields, use->settings);
@@ -130,12 +158,18 @@ static enum status reserve_pairs(const char *file, const struct composition *com
 enum status mf_simulate_observables_reserve(const struct simulate_observables *observables,
                                             const struct composition *composition,
                                             struct run_folder *folder) {
-    for (const struct observable_use *use = observables->use; use->observable; use++)
+    for (const struct observable_use *use = observables->use; use->observable; use++) {
+        char own[OUTPUT_PATH_SIZE];
+        if (callers_own(use)) {
+            snprintf(own, sizeof own, "%s.tsv", callers_own(use)->name);
+            TRY(mf_run_folder_reserve(folder, own));
+        }
         for (const char *const *file = use->observable->files; file && *file; file++)
             if (strchr(*file, '*'))
                 TRY(reserve_pairs(*file, composition, folder));
             else
                 TRY(mf_run_folder_reserve(folder, *file));
+    }
     return STATUS_OK;
 }
 

@@ -3,12 +3,14 @@
 #pragma once
 
 #include "io/json.h"
+#include "observe/caller_observable.h"
 #include "observe/measure.h"
 #include "report/progress.h"
 #include "report/run_folder.h"
 
 struct simulate_observables {
-    struct observable_use use[OBSERVABLES_MAX + 1]; ///< settings are NULL of one without fields
+    /// Settings are NULL of one without any.
+    struct observable_use use[OBSERVABLES_MAX + CALLER_OBSERVABLES_MAX + 1];
 };
 
 /// Read the objects of a scene file; faults go to its document. Fails: NO_MEMORY.
@@ -16,7 +18,14 @@ struct simulate_observables {
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
                                          struct json_object *root,
                                          const struct simulation_setup *setup) MUST_USE;
+/// Add those of who calls the library. Fails: BAD_INPUT, NO_MEMORY.
+enum status mf_simulate_observables_add(struct simulate_observables *observables,
+                                        const struct caller_observables *callers) MUST_USE;
 void mf_simulate_observables_clear(struct simulate_observables *observables);
+
+/// Mix into a digest which functions of the caller's there are, of which no setting tells.
+void mf_simulate_observables_digest(const struct simulate_observables *observables,
+                                    uint64_t *digest);
 
 /// Write the settings as they were read.
 void mf_simulate_observables_write_used(const struct simulate_observables *observables,
@@ -41,7 +50,10 @@ enum status mf_simulate_observables_reserve(const struct simulate_observables *o
                                             const struct composition *composition,
                                             struct run_folder *folder) MUST_USE;
 
-enum { SIMULATE_MAX_SPANS = SIMULATION_SPANS + OBSERVABLES_MAX * OBSERVABLE_MAX_SPANS };
+enum {
+    SIMULATE_MAX_SPANS =
+        SIMULATION_SPANS + (OBSERVABLES_MAX + CALLER_OBSERVABLES_MAX) * OBSERVABLE_MAX_SPANS
+};
 
 /// Spans of a checkpoint, the simulation's first; returns their number.
 size_t mf_simulate_observables_spans(struct simulate_observables *observables,
