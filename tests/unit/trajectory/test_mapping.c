@@ -243,6 +243,34 @@ static void test_atoms_are_beads_when_there_are_no_residues(void **state) {
     clear();
 }
 
+/// Without names of residues a bead has the name of its only atom, and molecules are of one type if
+/// their atoms have the same names.
+static void test_types_of_the_file_are_types_of_beads(void **state) {
+    static const char *const name[ATOMS] = {"O", "H", "H", "A", "O", "H", "H", "Kr", "H", "H", "A"};
+    static const int molecule[ATOMS] = {1, 1, 1, 0, 2, 2, 2, 3, 4, 4, 5};
+    static const char *const types[] = {"A", "B", "Kr", "C"};
+    static const size_t type[] = {0, 0, 1, 1, 2, 3};
+    (void)state;
+    assert_ok(mf_structure_init(&structure, ATOMS));
+    structure.has_names = structure.has_molecules = true;
+    for (int k = 0; k < ATOMS; k++) {
+        snprintf(structure.atom[k].name, STRUCTURE_NAME, "%s", name[k]);
+        structure.atom[k].molecule = molecule[k];
+        structure.atom[k].mass = 1;
+    }
+    assert_ok(mf_structure_number_residues(&structure));
+    assert_ok(mf_mapping_plan_default(&plan));
+    assert_ok(mf_mapping_init(&mapping, &plan, &structure));
+    assert_int_equal(mapping.types, 4);
+    assert_int_equal(mapping.beads, 6);
+    for (int k = 0; k < 4; k++)
+        assert_string_equal(mapping.type_name[k], types[k]);
+    for (int k = 0; k < 6; k++)
+        assert_int_equal(mapping.bead[k].type, type[k]);
+    mf_mapping_plan_clear(&plan);
+    clear();
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -255,6 +283,7 @@ int main(void) {
         TEST(test_united_atoms_are_warned_of),
         TEST(test_map_file_is_refused_when_its_keys_are_wrong),
         cmocka_unit_test(test_atoms_are_beads_when_there_are_no_residues),
+        cmocka_unit_test(test_types_of_the_file_are_types_of_beads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
