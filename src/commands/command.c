@@ -18,7 +18,7 @@ const struct command_option mf_command_common[] = {
     {"--seed", "N", "seed, instead of the file's"},
     {"--resume", NULL, "continue an interrupted run in its folder"},
     {"--force", NULL,
-     "replace the contents of the folder: a fit, an unfinished run, changed files"},
+     "replace a fit, an unfinished run, changed files"},
     {"--quiet", NULL, "no progress"},
     {"--help", NULL, "summary of all commands and options, after a command of that one"},
     {"--version", NULL, "version"},

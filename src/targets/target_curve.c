@@ -26,8 +26,7 @@
          .initial = -1,                                                                            \
          .minimum = -1,                                                                            \
          COLUMN,                                                                                   \
-         .help = "column of errors; 0: none; -1: that named as the target "                        \
-                 "with \"_error\", else 3 if present"},                                            \
+         .help = "column of errors; 0: none; -1: \"TARGET_error\", else 3 if present"},            \
         FIELD_END
 
 static const struct field time_fields[] = {
