@@ -38,6 +38,8 @@ static void test_fluid_is_flat(void **state) {
              "\"power\"},\n\"density_profile\": {\"bins\": 8},\n"
              "\"measure\": {\"equilibration\": 200, \"samples\": 400, \"every\": 5}}\n",
              &profile);
+    run_program_in_pieces(0, (const char *const[]){"simulate", "scene.json", "-o", "pieces", NULL});
+    results_assert_same("out", "pieces", (const char *const[]){"density_profile.tsv", NULL});
     assert_int_equal(profile.rows, BINS);
     for (size_t type = 0; type < 2; type++) {
         const double density = type ? 1 : 2;
