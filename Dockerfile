@@ -6,7 +6,7 @@
 
 FROM debian:12 AS build
 RUN apt-get update && apt-get install -y --no-install-recommends build-essential pkg-config libgsl-dev libnlopt-dev \
-    libcjson-dev librandom123-dev libhdf5-dev libmicrohttpd-dev libjs-chart.js
+    libcjson-dev librandom123-dev libhdf5-dev libzstd-dev libmicrohttpd-dev libjs-chart.js
 COPY . /source
 WORKDIR /source
 RUN make -j"$(nproc)" && make install DESTDIR=/image PREFIX=/usr/local
