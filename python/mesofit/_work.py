@@ -289,7 +289,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
             temperature: float | None = None, units: str | None = None,
             allow_truncated: bool = False, file_units: str | None = None,
             file_time_step: float | None = None, file_group: str | None = None,
-            box: float | Sequence[float] | None = None,
+            box: float | Sequence[float] | None = None, beads: PathLike | None = None,
             folder: PathLike | None = None, threads: int | None = None, force: bool = False,
             progress: bool | None = None) -> Result:
     """Make a target of a simulation of atoms, as `mesofit measure` does.
@@ -330,6 +330,8 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         As the program's options.
     box : float or three of them, optional [nm]
         Edges of a box, for files that have none.
+    beads : path, optional
+        File for the beads' trajectory: .gro, .xyz or .lammpstrj.
     folder, threads, force, progress
         As of `simulate`.
 
@@ -359,7 +361,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         temperature=temperature, units=units, allow_truncated=allow_truncated,
         file_units=file_units, file_time_step=file_time_step, file_group=file_group,
         box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),
-        threads=threads)
+        beads=None if beads is None else Path(beads), threads=threads)
     try:
         return _carry_out(words, memory, folder, False, force, progress)
     finally:

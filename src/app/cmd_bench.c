@@ -125,7 +125,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_bench = {
     .name = "bench",
     .usage = "engine|accuracy|stability|samplers [SCENE...]",
-    .summary = "time the engine; what time steps and samplers cost",
+    .summary = "costs of the engine, time steps, samplers",
     .min_files = 1,
     .max_files = COMMAND_MAX_FILES,
     .options = options,

@@ -165,7 +165,7 @@ static const struct topic fixed_topics[] = {
      {mf_verify_fields}},
     {"files",
      "map",
-     "the top of a map of atoms to beads, for `mesofit measure --map`; \"masses\": {\"C\": 12.011, "
+     "a map of atoms to beads (`mesofit measure --map`); \"masses\": {\"C\": 12.011, "
      "…} has masses of atoms [u] by name",
      {mf_mapping_plan_fields}},
     {"files", "bead", "one of \"beads\" of a map", {mf_mapping_plan_bead_fields}},

@@ -17,10 +17,9 @@ const struct command_option mf_command_common[] = {
      "threads (default: all processors; bench engine: 1); results do not depend on it"},
     {"--seed", "N", "seed, instead of the file's"},
     {"--resume", NULL, "continue an interrupted run in its folder"},
-    {"--force", NULL,
-     "replace the contents of the folder: a fit, an unfinished run, changed files"},
+    {"--force", NULL, "replace a fit, an unfinished run, changed files"},
     {"--quiet", NULL, "no progress"},
-    {"--help", NULL, "summary of all commands and options, after a command of that one"},
+    {"--help", NULL, "summary, after a command of that one"},
     {"--version", NULL, "version"},
     {NULL, NULL, NULL},
 };

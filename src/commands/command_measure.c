@@ -28,6 +28,7 @@ enum {
     FILE_TIME_STEP,
     FILE_GROUP,
     BOX,
+    BEADS,
 };
 
 static const struct command_option options[] = {
@@ -57,6 +58,7 @@ static const struct command_option options[] = {
     [FILE_TIME_STEP] = {"--file-time-step", "T", "time step of frames without times [ps]"},
     [FILE_GROUP] = {"--file-group", "NAME", "particle group of H5MD"},
     [BOX] = {"--box", "LX,LY,LZ", "box of files without one [nm]"},
+    [BEADS] = {"--beads", "FILE", "the beads' trajectory (.gro, .xyz, …)"},
     {NULL, NULL, NULL},
 };
 
@@ -146,6 +148,7 @@ static enum status run(const struct command_line *line) {
         .structure = line->own[STRUCTURE],
         .map = line->own[MAP],
         .molecules = line->own[MOLECULES],
+        .beads = line->own[BEADS],
         .frames = {.file = line->files,
                    .files = line->file_count,
                    .options = {.units = line->own[FILE_UNITS], .group = line->own[FILE_GROUP]},

@@ -10,8 +10,10 @@
 #include <unistd.h>
 
 const struct snapshot_format *const mf_snapshot_formats[] = {
-    &mf_snapshot_vtp, &mf_snapshot_json, &mf_snapshot_extxyz, &mf_snapshot_lammps, NULL};
-const char *const mf_snapshot_format_names[] = {"vtp", "json", "extxyz", "lammps-dump", NULL};
+    &mf_snapshot_vtp,    &mf_snapshot_json, &mf_snapshot_extxyz,
+    &mf_snapshot_lammps, &mf_snapshot_gsd,  NULL};
+const char *const mf_snapshot_format_names[] = {"vtp",         "json", "extxyz",
+                                                "lammps-dump", "gsd",  NULL};
 _Static_assert(sizeof mf_snapshot_formats / sizeof *mf_snapshot_formats == SNAPSHOT_FORMATS + 1 &&
                    sizeof mf_snapshot_format_names == sizeof mf_snapshot_formats,
                "every format has a name");
@@ -121,6 +123,7 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
         .solvent_particles = solvent_particles ? solvent_particles->name : NULL,
         .box = particles->box,
         .composition = composition,
+        .topology = particles->topology,
         .step = step,
         .time = time};
     for (int k = 0; k < particles->attributes; k++)

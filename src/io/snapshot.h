@@ -39,6 +39,7 @@ struct snapshot {
     const char *solvent_particles; ///< type of the others; NULL: there are none
     struct box box;
     const struct composition *composition; ///< borrowed
+    const struct topology *topology;       ///< borrowed; NULL: there are no molecules
     uint64_t step;
     double time;       ///< [τ]
     const char *units; ///< of all numbers, as trajectory_units.h names them
@@ -88,8 +89,8 @@ struct snapshot_format {
 };
 
 extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_extxyz,
-    mf_snapshot_lammps;
-enum { SNAPSHOT_FORMATS = 4 };
+    mf_snapshot_lammps, mf_snapshot_gsd;
+enum { SNAPSHOT_FORMATS = 5 };
 
 /// All formats, NULL-terminated, and their names.
 extern const struct snapshot_format *const mf_snapshot_formats[];

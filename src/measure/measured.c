@@ -26,7 +26,9 @@ static enum status find_composition(const struct mapping *mapping,
                                     struct composition *composition) {
     const bool mixed = mapping->types > 1;
     if (mapping->types > COMPOSITION_MAX_TYPES)
-        return mf_status_fail(STATUS_BAD_INPUT, "the map has %zu types of beads; there may be %d",
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "there are %zu types of beads; there may be %d: a map (--map) "
+                              "makes fewer",
                               mapping->types, COMPOSITION_MAX_TYPES);
     *composition = (struct composition){.types = (int)mapping->types};
     for (size_t type = 0; type < mapping->types; type++) {

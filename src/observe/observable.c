@@ -10,7 +10,8 @@
 
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
-extern const struct observable mf_clusters, mf_local_density, mf_collisions, mf_conserved;
+extern const struct observable mf_clusters, mf_density_profile, mf_local_density, mf_collisions,
+    mf_conserved;
 extern const struct observable mf_molecule_sizes, mf_molecule_motion;
 
 #define BONDED(NAME, kind, ...) &mf_bonded_distribution_##kind,
@@ -28,6 +29,7 @@ const struct observable *const mf_observables[] = {
     &mf_flow_field,
     &mf_polarity_observable,
     &mf_clusters,
+    &mf_density_profile,
     &mf_local_density,
     &mf_shear_viscosity,
     BONDED_LIST(BONDED) & mf_molecule_sizes,

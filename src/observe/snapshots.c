@@ -197,10 +197,10 @@ static const char *const no_or_yes[] = {"no", "yes", NULL};
 
 static const struct field fields[] = {
     {"every", FIELD_INTEGER, offsetof(struct settings, every), .required = true, .minimum = 1,
-     .maximum = 1e9, .unit = "steps", .help = "interval between snapshots after the equilibration"},
+     .maximum = 1e9, .unit = "steps", .help = "interval between snapshots"},
     {"formats", FIELD_CHOICES, offsetof(struct settings, formats), .initial = 1,
      .choices = mf_snapshot_format_names, .unit = "",
-     .help = "ParaView, JSON (also for \"placement\"), extended XYZ, LAMMPS dump"},
+     .help = "ParaView, JSON (also for \"placement\"), extended XYZ, LAMMPS dump, GSD"},
     {"solvent", FIELD_CHOICE, offsetof(struct settings, solvent), .choices = no_or_yes,
      .initial = 0, .unit = "",
      .help = "include the solvent of collision-dynamics, as the last type"},

@@ -45,7 +45,7 @@ static const char *const omega_bases[] = {"none", "start", NULL};
          .minimum = 0,                                                                              \
          .maximum = 1000,                                                                           \
          .unit = "",                                                                                \
-         .help = "number of coefficients; 0: 100 (bezier), 12 (bspline) or those not "              \
+         .help = "number; 0: 100 (bezier), 12 (bspline) or those not "                              \
                  "fixed (power)"},                                                                  \
         {"base",     FIELD_CHOICE,         MEMBER(base), .choices = its_bases, .initial = its_base, \
          .unit = "", .help = its_base_help},                                                        \

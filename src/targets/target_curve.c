@@ -19,15 +19,14 @@
      .initial = 0,                                                                                 \
      .minimum = 0,                                                                                 \
      COLUMN,                                                                                       \
-     .help = "column of the values; 0: that named as the target, else 2"},                         \
+     .help = "column; 0: that named as the target, else 2"},                                       \
         {"error_column",                                                                           \
          FIELD_INTEGER,                                                                            \
          CURVE(error_column),                                                                      \
          .initial = -1,                                                                            \
          .minimum = -1,                                                                            \
          COLUMN,                                                                                   \
-         .help = "column of errors; 0: none; -1: that named as the target "                        \
-                 "with \"_error\", else 3 if present"},                                            \
+         .help = "errors; 0: none; -1: \"TARGET_error\", else 3 if present"},                      \
         FIELD_END
 
 static const struct field time_fields[] = {

@@ -15,6 +15,7 @@ struct work {
     size_t *member; ///< shape [atoms]: atoms by residue
     bool *taken;    ///< shape [atoms]: belongs to a bead
     size_t used;    ///< atoms that belong to beads
+    size_t model[MAPPING_MAX_BEADS + 1]; ///< of a type without a name: a residue of it
 };
 
 /// Sort the atoms by residue, keeping their order; without residues each is one.
@@ -41,30 +42,58 @@ static enum status fail_atom(const struct work *work, size_t atom, const char *w
                           a->residue_name, what);
 }
 
-/// Number of a type, which is new or was there.
-static size_t find_type(struct mapping *mapping, const char *name) {
+/// Whether two residues have atoms of the same names in the same order.
+static bool are_alike(const struct work *work, size_t a, size_t b) {
+    const size_t *const first = work->first;
+    const size_t count = first[a + 1] - first[a];
+    if (first[b + 1] - first[b] != count)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(work->structure->atom[work->member[first[a] + i]].name,
+                   work->structure->atom[work->member[first[b] + i]].name) != 0)
+            return false;
+    return true;
+}
+
+/// Number of a type, which is new or was there: types are told apart by their names or, where the
+/// file has no names of residues, by the names of their atoms. @param[in] name  or ""
+static size_t find_type(struct work *work, const char *name, size_t residue) {
+    struct mapping *const mapping = work->mapping;
     size_t type = 0;
-    while (type < mapping->types && strcmp(mapping->type_name[type], name) != 0)
+    while (type < mapping->types &&
+           (strcmp(mapping->type_name[type], name) != 0 ||
+            (name[0] == '\0' && !are_alike(work, work->model[type], residue))))
         type++;
-    if (type == mapping->types)
+    if (type == mapping->types) {
+        work->model[type] = residue;
         snprintf(mapping->type_name[mapping->types++], STRUCTURE_NAME, "%.*s", STRUCTURE_NAME - 1,
                  name);
+    }
     return type;
+}
+
+/// What the plan calls a bead's type or, in its absence, the file: by its residue's name, or that
+/// of an atom alone. "": nobody names it.
+static const char *name_type(const struct work *work, const struct mapping_entry *entry,
+                             const struct structure_atom *atom, size_t residue) {
+    const bool alone = work->first[residue + 1] - work->first[residue] == 1;
+    if (entry->type[0])
+        return entry->type;
+    return atom->residue_name[0] || !alone ? atom->residue_name : atom->name;
 }
 
 /// Begin a bead whose atoms follow.
 static enum status begin_bead(struct work *work, const struct mapping_entry *entry, size_t atom) {
     struct mapping *const mapping = work->mapping;
     const struct structure_atom *const a = &work->structure->atom[atom];
-    const char *const name = entry->type[0] ? entry->type : a->residue_name;
-    const size_t type = find_type(mapping, name[0] ? name : "A");
+    const size_t residue = work->structure->residues ? a->residue : atom;
+    const size_t type = find_type(work, name_type(work, entry, a, residue), residue);
     if (mapping->types > MAPPING_MAX_BEADS)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: more than %d types of beads", work->plan->file,
-                              MAPPING_MAX_BEADS);
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: more than %d types of beads; a map (--map) makes fewer",
+                              work->plan->file, MAPPING_MAX_BEADS);
     mapping->bead[mapping->beads++] =
-        (struct mapping_bead){.first = work->used,
-                              .type = type,
-                              .molecule = work->structure->residues ? a->residue : atom};
+        (struct mapping_bead){.first = work->used, .type = type, .molecule = residue};
     return STATUS_OK;
 }
 
@@ -168,6 +197,26 @@ static enum status take_residues(struct work *work, const struct mapping_entry *
     return STATUS_OK;
 }
 
+static bool is_used(const struct mapping *mapping, const char *name) {
+    for (size_t type = 0; type < mapping->types; type++)
+        if (strcmp(mapping->type_name[type], name) == 0)
+            return true;
+    return false;
+}
+
+/// Types that nobody names are A, B and so on, but for what others are called.
+static void name_rest(struct mapping *mapping) {
+    int next = 0;
+    for (size_t type = 0; type < mapping->types; type++)
+        for (char *const name = mapping->type_name[type]; name[0] == '\0';) {
+            char free[STRUCTURE_NAME];
+            snprintf(free, sizeof free, next < 26 ? "%c" : "A%d", next < 26 ? 'A' + next : next);
+            if (!is_used(mapping, free))
+                memcpy(name, free, sizeof free);
+            next++;
+        }
+}
+
 static enum status find_rest(const struct work *work) {
     size_t atom = 0;
     if (work->plan->ignores_rest)
@@ -193,7 +242,7 @@ static bool is_broken(const struct work *work) {
 enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan *plan,
                              const struct structure *structure) {
     enum status status = STATUS_OK;
-    struct work work = {mapping, plan, structure, 0, NULL, NULL, NULL, 0};
+    struct work work = {.mapping = mapping, .plan = plan, .structure = structure};
     const size_t atoms = structure->atoms;
     NEW_ARRAY(mapping->type_name, MAPPING_MAX_BEADS + 1);
     NEW_ARRAY(mapping->bead, atoms + 1); // one more: a bead is begun before an atom is found taken
@@ -205,6 +254,7 @@ enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan 
         CHECK(plan->entry[k].first ? take_range(&work, &plan->entry[k])
                                    : take_residues(&work, &plan->entry[k]));
     CHECK(find_rest(&work));
+    name_rest(mapping);
     mapping->broken = is_broken(&work);
 done:
     mf_memory_free(work.taken);

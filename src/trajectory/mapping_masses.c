@@ -28,8 +28,16 @@ static const char *guess(const struct structure *structure, size_t k) {
     return mf_elements_guess(atom, alone);
 }
 
+/// A mass of 0 is that of a site without any, as M of TIP4P; in a file where all are 0 it is none.
+static bool has_masses(const struct structure *structure) {
+    for (size_t k = 0; k < structure->atoms; k++)
+        if (structure->atom[k].mass > 0)
+            return true;
+    return false;
+}
+
 static enum origin find_mass(const struct mapping_plan *plan, const struct structure *structure,
-                             size_t number, double *mass) {
+                             bool from_file, size_t number, double *mass) {
     const struct structure_atom *const atom = &structure->atom[number];
     for (size_t k = 0; k < plan->masses; k++)
         if (strcmp(plan->mass[k].name, atom->name) == 0) {
@@ -37,7 +45,7 @@ static enum origin find_mass(const struct mapping_plan *plan, const struct struc
             return FROM_PLAN;
         }
     *mass = atom->mass;
-    if (atom->mass > 0)
+    if (from_file && atom->mass >= 0)
         return FROM_FILE;
     const char *const element = guess(structure, number);
     *mass = element ? mf_elements_mass(element) : NAN;
@@ -49,6 +57,7 @@ enum { MAX_REPORTED = 64 };
 struct reported {
     const struct structure_atom *atom[MAX_REPORTED];
     size_t count;
+    bool from_file;                      ///< the file knows masses
     bool hydrogen;                       ///< there is some
     const struct structure_atom *carbon; ///< that is called by more than its element, or NULL
 };
@@ -86,7 +95,7 @@ static void look_for_united(struct reported *reported, const struct structure *s
 }
 
 /// The mass of a bead, and the weights of its atoms if these are not those of geometry. The weight
-/// of an atom alone is 1, whatever its mass.
+/// of an atom alone is 1, whatever its mass; atoms none of which has a mass weigh the same.
 static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan *plan,
                               const struct structure *structure, struct mapping_bead *bead,
                               struct reported *reported) {
@@ -95,7 +104,7 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
     for (size_t i = 0; i < bead->count; i++) {
         const size_t k = mapping->atom[bead->first + i];
         double mass;
-        const enum origin origin = find_mass(plan, structure, k, &mass);
+        const enum origin origin = find_mass(plan, structure, reported->from_file, k, &mass);
         if (origin == FROM_NOBODY && by_mass && bead->count > 1)
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: unknown mass of atom %zu, \"%s\": give it in \"masses\" of "
@@ -109,19 +118,24 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
         if (by_mass)
             weight[i] = bead->count > 1 ? mass : 1;
     }
-    if (bead->mass == 0)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: the bead of atom %zu, \"%s\", has no mass: no atom of it has",
-                              plan->file, mapping->atom[bead->first] + 1,
-                              structure->atom[mapping->atom[bead->first]].name);
+    const bool without = bead->mass == 0;
     for (size_t i = 0; by_mass && bead->count > 1 && i < bead->count; i++)
-        weight[i] /= bead->mass;
-    return STATUS_OK;
+        weight[i] = without ? 1 / (double)bead->count : weight[i] / bead->mass;
+    if (!without)
+        return STATUS_OK;
+    bead->mass = NAN; // none that a simulation could have
+    const struct structure_atom *const first = &structure->atom[mapping->atom[bead->first]];
+    return was_reported(reported, first)
+               ? STATUS_OK
+               : mf_mapping_note(mapping,
+                                 "the bead of \"%s\" has no mass: it is at the centre of "
+                                 "geometry, and its temperature is not known",
+                                 first->name);
 }
 
 enum status mf_mapping_build_masses(struct mapping *mapping, const struct mapping_plan *plan,
                                     const struct structure *structure) {
-    struct reported reported = {.count = 0};
+    struct reported reported = {.from_file = has_masses(structure)};
     for (size_t k = 0; k < mapping->beads; k++)
         TRY(weigh_bead(mapping, plan, structure, &mapping->bead[k], &reported));
     if (reported.carbon && !reported.hydrogen)

@@ -24,7 +24,7 @@ const struct field mf_mapping_plan_bead_fields[] = {
     {"residue", FIELD_TEXT, OFFSET(residue), .unit = "",
      .help = "name of the residue; default: any residue or molecule"},
     {"atoms", FIELD_TEXT, OFFSET(atoms), .unit = "",
-     .help = "names of its atoms, separated by blanks; default: all of the residue"},
+     .help = "names of its atoms; default: all of the residue"},
     {"first", FIELD_INTEGER, OFFSET(first), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
      .unit = "", .help = "instead of names: first atom, counted from 1"},
     {"last", FIELD_INTEGER, OFFSET(last), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
@@ -32,7 +32,7 @@ const struct field mf_mapping_plan_bead_fields[] = {
     {"size", FIELD_INTEGER, OFFSET(size), .minimum = 1, .maximum = FIELD_LARGEST_INTEGER,
      .unit = "", .help = "consecutive atoms in a bead; default: all"},
     {"centre", FIELD_CHOICE, OFFSET(centre), .choices = centres, .unit = "",
-     .help = "position of a bead: centre of mass or of geometry"},
+     .help = "centre of mass or of geometry"},
     FIELD_END};
 #undef OFFSET
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/measure_run.h"
 
-#include "base/number_text.h"
 #include "scene/molecules_file.h"
 #include "io/units.h"
 #include "report/progress.h"
+#include "trajectory/beads_file.h"
 #include "work/measure_output.h"
+#include "work/measure_print.h"
 
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 
 struct run {
     const struct measure_request *request;
@@ -21,6 +23,7 @@ struct run {
     struct mapping mapping;
     struct frames frames;
     struct measured measured;
+    struct beads_file beads;
 };
 
 /// Every file that is read must be spared.
@@ -79,6 +82,26 @@ static enum status find_beads(struct run *run) {
     return STATUS_OK;
 }
 
+/// The file of beads is outside of the folder, and a file that is there is somebody's.
+static enum status open_beads(struct run *run, bool force) {
+    const char *const path = run->request->beads;
+    struct stat is;
+    if (path == NULL)
+        return STATUS_OK;
+    TRY(mf_input_files_protect(&run->inputs, path));
+    if (!force && lstat(path, &is) == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s is there: --force replaces it, --beads OTHER keeps it", path);
+    return mf_beads_file_open(&run->beads, path, &run->mapping, &run->structure.structure);
+}
+
+/// The frames that were measured last, as beads.
+static enum status add_beads(struct run *run, size_t count) {
+    for (size_t k = 0; run->request->beads && k < count; k++)
+        TRY(mf_beads_file_add(&run->beads, &run->measured.slot[k].beads));
+    return STATUS_OK;
+}
+
 static void report(struct run *run) {
     const struct frames *const frames = &run->frames;
     uint64_t done, total;
@@ -126,6 +149,7 @@ static enum status read_frames(struct run *run) {
             TRY(begin_measuring(run));
         }
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
+        TRY(add_beads(run, count));
         report(run);
     }
     if (run->frames.used > 0)
@@ -162,6 +186,8 @@ static enum status read_again(struct run *run, size_t skip) {
     plan.skip = skip;
     mf_measured_clear(&run->measured);
     mf_frames_close(&run->frames);
+    if (run->request->beads)
+        TRY(mf_beads_file_restart(&run->beads));
     if (run->request->molecules) { // whose types have become those of the beads
         mf_scene_molecules_clear(&run->molecules);
         TRY(mf_molecules_file_read(&run->molecules, &run->types, run->request->molecules));
@@ -192,164 +218,6 @@ static enum status find_equilibrium(struct run *run) {
     return read_again(run, slowest.frames);
 }
 
-/// How far beads go, and what is to be known of it: a periodic box slows D.
-static void print_diffusion(struct run *run, const struct units *units) {
-    const struct measured_motion *const motion = &run->measured.motion;
-    const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
-    const double cm2 = mf_units_diffusion_cm2_per_s(units) * 1e5;
-    char diffusion[NUMBER_TEXT_SIZE];
-    mf_number_text(cm2 * s.msd, cm2 * s.msd_error, diffusion);
-    mf_progress_print(&run->progress,
-                      "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, for this box: a larger "
-                      "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
-                      diffusion, s.fit_begin, s.fit_end);
-    if (motion->path.differences)
-        mf_progress_print(&run->progress,
-                          "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
-                          "it is lower at short times, its integral is right",
-                          2 * motion->interval);
-    else if (motion->has_vacf && mf_motion_is_coarse(&s))
-        mf_progress_print(
-            &run->progress,
-            "mesofit: warning: frames are too far apart for D by the VACF, %.3g 1e-5 "
-            "cm^2/s: velocities lose %.0f %% of their correlation from one to the next",
-            cm2 * s.green_kubo, 100 * s.vacf_drop);
-}
-
-static void print_motion(struct run *run, const struct units *units) {
-    const struct measured_motion *const motion = &run->measured.motion;
-    if (!motion->begun && !motion->plan.leave_out)
-        mf_progress_print(&run->progress, "mesofit: warning: no motion, no escape times: %s",
-                          run->measured.frames < 2 ? "there is one frame"
-                                                   : "frames have no times (--file-time-step)");
-    if (!motion->begun)
-        return;
-    if (mf_motion_blocks(&motion->motion) == 0)
-        mf_progress_print(&run->progress,
-                          "mesofit: warning: no motion, no escape times: %zu frames are no window "
-                          "of %lld intervals (--window)",
-                          motion->frames, (long long)motion->motion.plan.lags);
-    else
-        print_diffusion(run, units);
-    const struct etd_grid *const grid = &motion->etd.grid;
-    if (mf_etd_complete(&motion->etd) > 0 && mf_etd_pairs(&motion->etd) == 0)
-        mf_progress_print(&run->progress,
-                          "mesofit: warning: no escape times: no pair was between %.4g and %.4g nm",
-                          grid->r_minimum, grid->r_maximum);
-    else
-        mf_progress_print(
-            &run->progress, "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
-            grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);
-    if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
-        mf_progress_print(&run->progress, "no VACF: there are no velocities (--velocities "
-                                          "differences makes them of positions)");
-}
-
-/// The first atom of each bead of the first molecule of a kind, counted from 1.
-static bool list_atoms(const struct run *run, const struct topology_kind *kind, char *text,
-                       size_t size) {
-    const struct mapping *const mapping = &run->mapping;
-    bool sorted = true;
-    size_t length = 0, last = 0;
-    for (int n = 0; n < kind->beads && length < size; n++) {
-        const size_t bead = run->measured.molecules.match.bead[topology_id(kind, 0, n)];
-        const size_t atom = mapping->atom[mapping->bead[bead].first] + 1;
-        length += (size_t)snprintf(text + length, size - length, n ? ", %zu" : "%zu", atom);
-        sorted = sorted && atom > last;
-        last = atom;
-    }
-    return sorted;
-}
-
-/// Types in another order than that of the trajectory may be meant, or a slip: bonds show it.
-static void print_order(struct run *run) {
-    const struct topology *const topology = &run->molecules.molecules.topology;
-    char text[256];
-    for (int k = 0; run->request->map && k < topology->kinds; k++)
-        if (!list_atoms(run, &topology->kind[k], text, sizeof text))
-            mf_progress_print(
-                &run->progress,
-                "%s: its beads are not in the order of the atoms: they begin with the "
-                "atoms %s",
-                topology->kind[k].name, text);
-}
-
-static void print_molecules(struct run *run, const struct measure_result *result) {
-    const struct observable_results results = {.units = &result->units};
-    const struct observable_use *use = run->measured.molecules.use;
-    char line[256];
-    print_order(run);
-    for (; use->observable; use++) {
-        if (use->observable->print == NULL)
-            continue;
-        use->observable->print(use->state, &results, line, sizeof line);
-        mf_progress_print(&run->progress, "%s", line);
-    }
-}
-
-/// Bonds and angles that a fit takes a law for.
-static enum status print_constraints(struct run *run) {
-    const struct molecules *const molecules = run->measured.molecules.molecules;
-    for (int order = 0; molecules && order < BONDED_KINDS; order++)
-        for (int g = 0; g < molecules->groups[order]; g++) {
-            struct bonded_moments found;
-            TRY(mf_measured_molecules_moments(&run->measured.molecules, order, g, &found));
-            if (!mf_bonded_distribution_is_constrained(order, &found))
-                continue;
-            const char *const unit = mf_bonded_kinds[order]->is_length ? "nm" : "degrees";
-            mf_progress_print(
-                &run->progress,
-                "%s \"%s\": a constraint (standard deviation %.2g, mean %.4g %s): a fit replaces "
-                "it by a harmonic potential with a standard deviation of %.2g %s",
-                mf_bonded_kinds[order]->name, molecules->group[order][g].name, found.deviation,
-                found.mean, unit, mf_bonded_distribution_narrow(order, found.mean), unit);
-        }
-    return STATUS_OK;
-}
-
-static void print_pairs(struct run *run) {
-    const struct measured *const measured = &run->measured;
-    mf_progress_print(&run->progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
-                      (long long)measured->plan.bins,
-                      measured->pairs.within     ? ", without pairs that molecules exclude"
-                      : measured->pairs.molecule ? ", without pairs of one molecule or residue"
-                                                 : "");
-    if (mf_rdf_observable.assess(&measured->rdf, NULL) != STATUS_OK)
-        mf_progress_print(&run->progress, "mesofit: warning: %s", mf_status_message());
-    if (measured->plan.q_maximum > 0)
-        mf_progress_print(&run->progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
-                          measured->plan.q_maximum, (long long)measured->plan.waves);
-}
-
-/// What a person is to know.
-static void print_results(struct run *run, const struct measure_result *result) {
-    const struct measured *const measured = &run->measured;
-    if (mf_measure_output_is_alone(result))
-        mf_progress_print(&run->progress,
-                          measured->in_vacuum
-                              ? "there is no box: molecules alone are measured, no g(r), no motion"
-                              : "a single molecule: its g(r) is intramolecular and no target; "
-                                "bonds, angles and dihedrals are");
-    if (!measured->in_vacuum)
-        print_pairs(run);
-    if (measured->pairs.molecule && result->kinds == NULL)
-        mf_progress_print(
-            &run->progress,
-            "mesofit: warning: molecules have several beads: without --molecules a fit has no "
-            "bonds; g(r) is of different molecules alone, no target of a fit that has them");
-    print_molecules(run, result);
-    if (!measured->in_vacuum)
-        print_motion(run, &result->units);
-    if (measured->motion.begun && mf_measure_output_masses_differ(result))
-        mf_progress_print(&run->progress, "masses of beads differ: target.json has motion compared "
-                                          "with and not fitted, since friction is for one mass");
-    if (isnan(run->request->temperature) && measured->motion.temperature.count == 0)
-        mf_progress_print(
-            &run->progress,
-            "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
-            run->mapping.broken ? " by parts of molecules" : "");
-}
-
 static enum status write_results(struct run *run, bool interrupted) {
     mf_measured_motion_end(&run->measured.motion);
     mf_measured_molecules_end(&run->measured.molecules);
@@ -367,8 +235,12 @@ static enum status write_results(struct run *run, bool interrupted) {
     TRY(mf_measure_output_write(&result));
     mf_run_folder_draw(&run->folder);
     print_lines(&run->progress, &run->frames.notes);
-    print_results(run, &result);
-    TRY(print_constraints(run));
+    TRY(mf_measure_print(&run->progress, &result));
+    if (run->request->beads) {
+        TRY(mf_beads_file_commit(&run->beads));
+        mf_progress_print(&run->progress, "beads of %zu frames in %s", run->beads.frames,
+                          run->request->beads);
+    }
     mf_progress_print(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
                       run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
     return STATUS_OK;
@@ -392,6 +264,7 @@ static enum status prepare(struct run *run, const struct run_options *options) {
     TRY(mf_frames_open(&run->frames, &run->request->frames, &run->structure.structure,
                        structure_file(run)));
     TRY(check_units(run));
+    TRY(open_beads(run, options->force));
     return mf_run_folder_open(&run->folder, RUN_MEASUREMENT, run->request->frames.file[0],
                               &run->inputs, options);
 }
@@ -417,6 +290,7 @@ enum status mf_measure_run(const struct measure_request *request,
     struct run run = {.request = request,
                       .progress = mf_progress_begin(options->quiet, options->watcher)};
     const enum status status = carry_out(&run, options);
+    mf_beads_file_clear(&run.beads);
     mf_measured_clear(&run.measured);
     mf_scene_molecules_clear(&run.molecules);
     mf_frames_close(&run.frames);

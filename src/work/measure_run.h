@@ -10,6 +10,7 @@
 struct measure_request {
     const char *structure, *map; ///< NULL: the trajectory itself, one bead a residue
     const char *molecules;       ///< of which beads are bonded to which; NULL: nobody tells
+    const char *beads;           ///< file that the frames of beads are written to; NULL: none
     struct frames_plan frames;
     struct measured_plan measured;
     double temperature; ///< of the target [K]; NAN: that of the velocities

@@ -100,6 +100,27 @@ static void test_measure_has_masses_of_a_topology(void **state) {
     REFUSED("topol.top: has no coordinates: give it by -s", "topol.top", "-o", "none");
 }
 
+/// What a dump calls 1 and 2 are two types without a map, as a map makes of it.
+static void test_measure_has_the_types_of_the_file(void **state) {
+    char text[1 << 12];
+    int length = snprintf(text, sizeof text,
+                          "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n20\n"
+                          "ITEM: BOX BOUNDS pp pp pp\n0 3\n0 3\n0 3\nITEM: ATOMS id type x y z\n");
+    for (int k = 0; k < 20; k++)
+        length += snprintf(text + length, sizeof text - (size_t)length, "%d %d %g %g %g\n", k + 1,
+                           k < 8 ? 1 : 2, 0.13 * k, 0.07 * k * k, 1.1 * k);
+    temporary_folder_write(*state, "two.dump", text, (size_t)length);
+    static const char map[] = "{\"beads\": {\"1\": {\"first\": 1, \"last\": 8, \"size\": 1}, "
+                              "\"2\": {\"first\": 9, \"last\": 20, \"size\": 1}}}\n";
+    temporary_folder_write(*state, "map.json", map, strlen(map));
+    MEASURE("two.dump", "--file-units", "nano", "--static", "-o", "without");
+    assert_contains(result.err, "2: 12 beads of 1 atom");
+    MEASURE("two.dump", "--file-units", "nano", "--static", "--map", "map.json", "-o", "by_map");
+    results_assert_same("without", "by_map",
+                        (const char *const[]){"rdf_1-1.tsv", "rdf_1-2.tsv", "rdf_2-2.tsv", NULL});
+    assert_false(temporary_folder_exists("without/rdf.tsv"));
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -108,6 +129,7 @@ int main(void) {
         TEST(test_measure_has_the_same_window_when_frames_are_of_other_lengths),
         TEST(test_measure_has_the_box_that_is_told),
         TEST(test_measure_has_masses_of_a_topology),
+        TEST(test_measure_has_the_types_of_the_file),
     };
     find_samples();
     return cmocka_run_group_tests(tests, NULL, NULL);

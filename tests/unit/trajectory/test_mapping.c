@@ -185,13 +185,48 @@ static void test_map_is_refused_when_it_does_not_fit_the_atoms(void **state) {
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}, \"masses\": {\"QQ\": 0}}"));
     assert_true(fabs(mapping.bead[3].mass - 2 * 1.008) < 1e-12); // of a water with such a site
     mf_mapping_clear(&mapping);
-    assert_refused(state,
-                   "{\"beads\": {\"A\": {\"first\": 7, \"last\": 7}}, \"rest\": \"ignore\", "
-                   "\"masses\": {\"QQ\": 0}}",
-                   "the bead of atom 7, \"QQ\", has no mass");
+    assert_ok(try_map(state, "{\"beads\": {\"A\": {\"first\": 7, \"last\": 8}}, "
+                             "\"rest\": \"ignore\", \"masses\": {\"QQ\": 0, \"HW1\": 0}}"));
+    assert_true(isnan(mapping.bead[0].mass) && mapping.weight[0] == 0.5 &&
+                mapping.weight[1] == 0.5);
+    assert_contains((const char *)mapping.notes.data, "the bead of \"QQ\" has no mass");
+    mf_mapping_clear(&mapping);
     structure.atom[6].mass = 5;
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
     assert_null(strstr((const char *)mapping.notes.data, "united"));
+    clear();
+}
+
+/// TIP4P of Jorgensen et al., J. Chem. Phys. 79, 926 (1983): M, of which a topology says 0, is as
+/// if it were not there; a file where all masses are 0 does not know them.
+static void test_sites_without_mass_do_not_count(void **state) {
+    static const char *const name[] = {"O", "H", "H", "C"}; // as which M must not be taken
+    static const double mass[] = {15.9994, 1.008, 1.008, 0};
+    struct trajectory_frame frame = {0}, beads = {0};
+    (void)state;
+    for (int known = 0; known < 2; known++) {
+        assert_ok(mf_structure_init(&structure, 4));
+        structure.has_names = structure.has_residues = structure.has_masses = true;
+        for (int k = 0; k < 4; k++) {
+            snprintf(structure.atom[k].name, STRUCTURE_NAME, "%s", name[k]);
+            structure.atom[k].mass = known ? mass[k] : 0;
+        }
+        assert_ok(mf_structure_number_residues(&structure));
+        assert_ok(mf_mapping_plan_default(&plan));
+        assert_ok(mf_mapping_init(&mapping, &plan, &structure));
+        mf_mapping_plan_clear(&plan);
+        assert_true(fabs(mapping.bead[0].mass - (known ? 18.0154 : 15.999 + 2 * 1.008 + 12.011)) <
+                    1e-9);
+        if (!known)
+            clear();
+    }
+    assert_ok(mf_frame_reserve(&frame, 4, false));
+    memset(frame.position, 0, 4 * sizeof *frame.position);
+    frame.position[1][0] = 0.09, frame.position[2][0] = -0.03, frame.position[3][0] = 7;
+    assert_ok(mf_mapping_apply(&mapping, &frame, &beads));
+    assert_true(fabs(beads.position[0][0] - 0.06 * 1.008 / 18.0154) < 1e-14);
+    mf_frame_clear(&frame);
+    mf_frame_clear(&beads);
     clear();
 }
 
@@ -243,6 +278,34 @@ static void test_atoms_are_beads_when_there_are_no_residues(void **state) {
     clear();
 }
 
+/// Without names of residues a bead has the name of its only atom, and molecules are of one type if
+/// their atoms have the same names.
+static void test_types_of_the_file_are_types_of_beads(void **state) {
+    static const char *const name[ATOMS] = {"O", "H", "H", "A", "O", "H", "H", "Kr", "H", "H", "A"};
+    static const int molecule[ATOMS] = {1, 1, 1, 0, 2, 2, 2, 3, 4, 4, 5};
+    static const char *const types[] = {"A", "B", "Kr", "C"};
+    static const size_t type[] = {0, 0, 1, 1, 2, 3};
+    (void)state;
+    assert_ok(mf_structure_init(&structure, ATOMS));
+    structure.has_names = structure.has_molecules = true;
+    for (int k = 0; k < ATOMS; k++) {
+        snprintf(structure.atom[k].name, STRUCTURE_NAME, "%s", name[k]);
+        structure.atom[k].molecule = molecule[k];
+        structure.atom[k].mass = 1;
+    }
+    assert_ok(mf_structure_number_residues(&structure));
+    assert_ok(mf_mapping_plan_default(&plan));
+    assert_ok(mf_mapping_init(&mapping, &plan, &structure));
+    assert_int_equal(mapping.types, 4);
+    assert_int_equal(mapping.beads, 6);
+    for (int k = 0; k < 4; k++)
+        assert_string_equal(mapping.type_name[k], types[k]);
+    for (int k = 0; k < 6; k++)
+        assert_int_equal(mapping.bead[k].type, type[k]);
+    mf_mapping_plan_clear(&plan);
+    clear();
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -253,8 +316,10 @@ int main(void) {
         TEST(test_molecules_are_made_whole_in_tilted_boxes),
         TEST(test_map_is_refused_when_it_does_not_fit_the_atoms),
         TEST(test_united_atoms_are_warned_of),
+        cmocka_unit_test(test_sites_without_mass_do_not_count),
         TEST(test_map_file_is_refused_when_its_keys_are_wrong),
         cmocka_unit_test(test_atoms_are_beads_when_there_are_no_residues),
+        cmocka_unit_test(test_types_of_the_file_are_types_of_beads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The trajectory of beads that a map makes, as a file for other programs.
+///
+/// To add a format, write its `print` and put it into the list of beads_file.c.
+#pragma once
+
+#include "io/output.h"
+#include "trajectory/mapping.h"
+
+/// A file being written: it appears whole with mf_beads_file_commit or, all zero, is none. It must
+/// not be moved.
+struct beads_file {
+    const struct beads_format *format;
+    const struct mapping *mapping;     ///< borrowed
+    const struct structure *structure; ///< of its atoms, borrowed
+    size_t *order;                     ///< shape [beads]: as the atoms stand, and not by type
+    size_t frames;                     ///< that were written
+    struct output output;
+};
+
+/// Begin the file whose name's ending tells its format: .gro (nm, ps), .xyz and .extxyz, .lammpstrj
+/// and .dump (both in Å and fs). Beads stand by their molecules, in these by their first atoms.
+/// Fails: BAD_INPUT for another ending; IO, NO_MEMORY.
+enum status mf_beads_file_open(struct beads_file *file, const char *path,
+                               const struct mapping *mapping,
+                               const struct structure *structure) MUST_USE;
+
+/// Add a frame of mf_mapping_apply. Fails: BAD_INPUT for what the format cannot hold. What cannot
+/// be written fails at the end. Tested: cli/test_measure_beads.
+enum status mf_beads_file_add(struct beads_file *file,
+                              const struct trajectory_frame *beads) MUST_USE;
+
+/// Begin again without the frames so far.
+enum status mf_beads_file_restart(struct beads_file *file) MUST_USE;
+
+/// Fails: IO; there is no file then.
+enum status mf_beads_file_commit(struct beads_file *file) MUST_USE;
+
+/// Give up what was not committed; of all zero too.
+void mf_beads_file_clear(struct beads_file *file);

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work/measure_print.h"
+
+#include "base/number_text.h"
+#include "io/units.h"
+
+#include <math.h>
+
+/// How far beads go, and what is to be known of it: a periodic box slows D.
+static void print_diffusion(struct progress *progress, const struct measure_result *result) {
+    const struct measured_motion *const motion = &result->measured->motion;
+    const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
+    const double cm2 = mf_units_diffusion_cm2_per_s(&result->units) * 1e5;
+    char diffusion[NUMBER_TEXT_SIZE];
+    mf_number_text(cm2 * s.msd, cm2 * s.msd_error, diffusion);
+    mf_progress_print(progress,
+                      "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, for this box: a larger "
+                      "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
+                      diffusion, s.fit_begin, s.fit_end);
+    if (motion->path.differences)
+        mf_progress_print(progress,
+                          "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
+                          "it is lower at short times, its integral is right",
+                          2 * motion->interval);
+    else if (motion->has_vacf && mf_motion_is_coarse(&s))
+        mf_progress_print(
+            progress,
+            "mesofit: warning: frames are too far apart for D by the VACF, %.3g 1e-5 "
+            "cm^2/s: velocities lose %.0f %% of their correlation from one to the next",
+            cm2 * s.green_kubo, 100 * s.vacf_drop);
+}
+
+static void print_motion(struct progress *progress, const struct measure_result *result) {
+    const struct measured_motion *const motion = &result->measured->motion;
+    if (!motion->begun && !motion->plan.leave_out)
+        mf_progress_print(progress, "mesofit: warning: no motion, no escape times: %s",
+                          result->measured->frames < 2 ? "there is one frame"
+                                                       : "frames have no times (--file-time-step)");
+    if (!motion->begun)
+        return;
+    if (mf_motion_blocks(&motion->motion) == 0)
+        mf_progress_print(progress,
+                          "mesofit: warning: no motion, no escape times: %zu frames are no window "
+                          "of %lld intervals (--window)",
+                          motion->frames, (long long)motion->motion.plan.lags);
+    else
+        print_diffusion(progress, result);
+    const struct etd_grid *const grid = &motion->etd.grid;
+    if (mf_etd_complete(&motion->etd) > 0 && mf_etd_pairs(&motion->etd) == 0)
+        mf_progress_print(progress,
+                          "mesofit: warning: no escape times: no pair was between %.4g and %.4g nm",
+                          grid->r_minimum, grid->r_maximum);
+    else
+        mf_progress_print(
+            progress, "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
+            grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);
+    if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
+        mf_progress_print(progress, "no VACF: there are no velocities (--velocities "
+                                    "differences makes them of positions)");
+}
+
+/// The first atom of each bead of the first molecule of a kind, counted from 1.
+static bool list_atoms(const struct measure_result *result, const struct topology_kind *kind,
+                       char *text, size_t size) {
+    const struct mapping *const mapping = result->mapping;
+    bool sorted = true;
+    size_t length = 0, last = 0;
+    for (int n = 0; n < kind->beads && length < size; n++) {
+        const size_t bead = result->measured->molecules.match.bead[topology_id(kind, 0, n)];
+        const size_t atom = mapping->atom[mapping->bead[bead].first] + 1;
+        length += (size_t)snprintf(text + length, size - length, n ? ", %zu" : "%zu", atom);
+        sorted = sorted && atom > last;
+        last = atom;
+    }
+    return sorted;
+}
+
+/// Types in another order than that of the trajectory may be meant, or a slip: bonds show it.
+static void print_order(struct progress *progress, const struct measure_result *result) {
+    const struct topology *const topology = &result->kinds->molecules.topology;
+    char text[256];
+    for (int k = 0; result->request->map && k < topology->kinds; k++)
+        if (!list_atoms(result, &topology->kind[k], text, sizeof text))
+            mf_progress_print(
+                progress,
+                "%s: its beads are not in the order of the atoms: they begin with the "
+                "atoms %s",
+                topology->kind[k].name, text);
+}
+
+static void print_molecules(struct progress *progress, const struct measure_result *result) {
+    const struct observable_results results = {.units = &result->units};
+    const struct observable_use *use = result->measured->molecules.use;
+    char line[256];
+    if (result->kinds)
+        print_order(progress, result);
+    for (; use->observable; use++) {
+        if (use->observable->print == NULL)
+            continue;
+        use->observable->print(use->state, &results, line, sizeof line);
+        mf_progress_print(progress, "%s", line);
+    }
+}
+
+/// Bonds and angles that a fit takes a law for.
+static enum status print_constraints(struct progress *progress,
+                                     const struct measure_result *result) {
+    const struct molecules *const molecules = result->measured->molecules.molecules;
+    for (int order = 0; molecules && order < BONDED_KINDS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            struct bonded_moments found;
+            TRY(mf_measured_molecules_moments(&result->measured->molecules, order, g, &found));
+            if (!mf_bonded_distribution_is_constrained(order, &found))
+                continue;
+            const char *const unit = mf_bonded_kinds[order]->is_length ? "nm" : "degrees";
+            mf_progress_print(
+                progress,
+                "%s \"%s\": a constraint (standard deviation %.2g, mean %.4g %s): a fit replaces "
+                "it by a harmonic potential with a standard deviation of %.2g %s",
+                mf_bonded_kinds[order]->name, molecules->group[order][g].name, found.deviation,
+                found.mean, unit, mf_bonded_distribution_narrow(order, found.mean), unit);
+        }
+    return STATUS_OK;
+}
+
+static void print_pairs(struct progress *progress, const struct measure_result *result) {
+    const struct measured *const measured = result->measured;
+    mf_progress_print(progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
+                      (long long)measured->plan.bins,
+                      measured->pairs.within     ? ", without pairs that molecules exclude"
+                      : measured->pairs.molecule ? ", without pairs of one molecule or residue"
+                                                 : "");
+    if (mf_rdf_observable.assess(&measured->rdf, NULL) != STATUS_OK)
+        mf_progress_print(progress, "mesofit: warning: %s", mf_status_message());
+    if (measured->plan.q_maximum > 0)
+        mf_progress_print(progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
+                          measured->plan.q_maximum, (long long)measured->plan.waves);
+}
+
+/// What a person is to know.
+static void print_all(struct progress *progress, const struct measure_result *result) {
+    const struct measured *const measured = result->measured;
+    if (mf_measure_output_is_alone(result))
+        mf_progress_print(progress,
+                          measured->in_vacuum
+                              ? "there is no box: molecules alone are measured, no g(r), no motion"
+                              : "a single molecule: its g(r) is intramolecular and no target; "
+                                "bonds, angles and dihedrals are");
+    if (!measured->in_vacuum)
+        print_pairs(progress, result);
+    if (measured->pairs.molecule && result->kinds == NULL)
+        mf_progress_print(
+            progress,
+            "mesofit: warning: molecules have several beads: without --molecules a fit has no "
+            "bonds; g(r) is of different molecules alone, no target of a fit that has them");
+    print_molecules(progress, result);
+    if (!measured->in_vacuum)
+        print_motion(progress, result);
+    if (measured->motion.begun && mf_measure_output_masses_differ(result))
+        mf_progress_print(progress, "masses of beads differ: target.json has motion compared "
+                                    "with and not fitted, since friction is for one mass");
+    if (isnan(result->request->temperature) && measured->motion.temperature.count == 0)
+        mf_progress_print(
+            progress,
+            "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
+            result->mapping->broken ? " by parts of molecules" : "");
+}
+
+enum status mf_measure_print(struct progress *progress, const struct measure_result *result) {
+    print_all(progress, result);
+    return print_constraints(progress, result);
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Snapshots of `mesofit simulate` as GSD hold what the dump beside them does, read by readers that
+// know files of HOOMD and LAMMPS, and the bonds of the scene.
+#include "shared/is_close.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+#include "trajectory/trajectory.h"
+
+#include <math.h>
+
+enum { CHAINS = 20, SINGLE = 10, ATOMS = 3 * CHAINS + SINGLE };
+
+static const char scene[] =
+    "{\"seed\": 3, \"box\": [4, 5, 6], \"time_step\": 0.01,\n"
+    "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 50, \"length\": 0.5}},\n"
+    "\"molecules\": {\"chain\": {\"count\": 20, \"chain\": {\"beads\": [\"A\", \"B\", \"A\"],\n"
+    "    \"bond\": \"spring\"}}},\n"
+    "\"particles\": {\"types\": {\"W\": 10}, \"mass\": {\"A\": 2, \"B\": 1, \"W\": 3}},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
+    "\"snapshots\": {\"every\": 100, \"formats\": [\"lammps-dump\", \"gsd\"]},\n"
+    "\"measure\": {\"equilibration\": 200, \"samples\": 20, \"every\": 10}}\n";
+
+static void open_at(struct trajectory *trajectory, struct trajectory_frame *frame, const char *file,
+                    int frames) {
+    const struct trajectory_options options = {.units = "lj"};
+    bool more = true;
+    *frame = (struct trajectory_frame){0};
+    assert_ok(mf_trajectory_open(trajectory, file, &options));
+    for (int k = 0; k < frames; k++) {
+        assert_ok(mf_trajectory_next(trajectory, frame, &more));
+        assert_true(more);
+    }
+}
+
+static void compare(const struct trajectory_frame *gsd, const struct trajectory_frame *dump) {
+    assert_true(gsd->step == dump->step && gsd->atoms == ATOMS && dump->atoms == ATOMS);
+    for (int d = 0; d < 3; d++)
+        assert_close(gsd->box[d][d], 4 + d, 1e-6);
+    for (int k = 0; k < ATOMS; k++)
+        for (int d = 0; d < 3; d++) { // the one is about the middle of the box
+            assert_true(fabs(gsd->position[k][d] + (4 + d) / 2.0 - dump->position[k][d]) < 1e-5);
+            assert_true(fabs(gsd->velocity[k][d] - dump->velocity[k][d]) < 1e-5);
+        }
+}
+
+static void test_gsd_is_the_dump_with_bonds(void **state) {
+    static struct run_program_result result;
+    struct trajectory gsd, dump;
+    struct trajectory_frame gsd_frame, dump_frame;
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 0);
+    open_at(&gsd, &gsd_frame, "out/snapshots/step_000000400.gsd", 1);
+    open_at(&dump, &dump_frame, "out/snapshots/trajectory.lammpstrj", 3);
+    compare(&gsd_frame, &dump_frame);
+    int molecules = 0;
+    for (int k = 0; k < ATOMS; k++) {
+        const struct structure_atom *const atom = &gsd.structure.atom[k];
+        const char *const type = atom->name;
+        assert_int_equal(atom->type + 1, dump.structure.atom[k].type);
+        assert_close(atom->mass, type[0] == 'A' ? 2 : type[0] == 'B' ? 1 : 3, 1e-7);
+        molecules += atom->molecule != 0;
+        for (int j = 0; j < k; j++) // the same molecule in both, if in one
+            if (atom->molecule != 0)
+                assert_int_equal(atom->molecule == gsd.structure.atom[j].molecule,
+                                 dump.structure.atom[k].molecule ==
+                                     dump.structure.atom[j].molecule);
+    }
+    assert_int_equal(molecules, 3 * CHAINS);
+    assert_int_equal(gsd.structure.residues, CHAINS + SINGLE);
+    mf_frame_clear(&gsd_frame);
+    mf_frame_clear(&dump_frame);
+    mf_trajectory_close(&gsd);
+    mf_trajectory_close(&dump);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_gsd_is_the_dump_with_bonds,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
