@@ -215,7 +215,8 @@ static void print_measurements(const struct export_job *job, FILE *stream) {
         print_types(job, pair, stream);
     }
     fprintf(stream, " cutoff %.12g\n", model->rdf_range * job->units.length * rounding);
-    fprintf(stream, "fix rdf all ave/time ${every} $(v_steps/v_every) ${steps} c_rdf[*] file "
+    fprintf(stream, "variable samples equal floor(v_steps/v_every)\n"
+                    "fix rdf all ave/time ${every} ${samples} $(v_samples*v_every) c_rdf[*] file "
                     "rdf.dat mode vector\n"
                     "fix means all ave/time ${every} 1 ${every} c_thermo_temp c_thermo_press "
                     "c_thermo_pe file thermo.dat\n"

@@ -88,8 +88,13 @@ enum status mf_json_parse(const char *file, const char *text, struct cJSON **roo
     if (parsed == NULL)
         return fail_where_it_ended(file, text, end);
     end += strspn(end, spaces);
+    const bool is_table = cJSON_IsNumber(parsed);
     if (*end != '\0') {
         cJSON_Delete(parsed);
+        if (is_table)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: a table, not JSON: it is named in a JSON file, as \"file\"",
+                                  file);
         return fail_at(file, text, end, "nothing after the document");
     }
     *root = parsed;

@@ -304,6 +304,8 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
         CHECK(mf_compare_table_print(fits, count));
     if (mf_figures_draw_comparison(out) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
+    else if (!quiet)
+        printf("figures: %s/figures\n", out);
 done:
     mf_tracked_files_close(&own);
     for (size_t k = 0; fits && k < count; k++)
