@@ -84,7 +84,7 @@ static void write_topology(int waters, int last_name, bool variable) {
     put_texts(water, "residue_name_table", false, 1, 4, "SOL");
     put_one(dimer, "mass", H5T_NATIVE_FLOAT, 2, (float[]){15, 14});
     put_one(dimer, "particle_name", H5T_NATIVE_INT32, 2, (int32_t[]){0, last_name});
-    put_texts(dimer, "particle_name_table", false, 1, 4, "CA");
+    put_texts(dimer, "particle_name_table", false, 1, 4, "CA\0");
     put_one(dimer, "residue_id", H5T_NATIVE_INT32, 2, (int32_t[]){4, 5});
     put_one(dimer, "residue_name", H5T_NATIVE_INT32, 2, (int32_t[]){1, 0});
     put_texts(dimer, "residue_name_table", false, 2, 4, "GLY\0ALA");
