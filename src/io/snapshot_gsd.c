@@ -3,13 +3,11 @@
 // GSD of HOOMD-blue, as OVITO, VMD and MDAnalysis read it (gsd.readthedocs.io: file layer 2.0,
 // schema hoomd 1.4), one frame a file: head, numbers of each chunk, index, names, all
 // little-endian. The box is centred at 0. It says no units: its numbers are those of all snapshots.
+#include "io/gsd.h"
 #include "io/snapshot.h"
 #include "system/topology.h"
 
 #include <string.h>
-
-enum { UINT8 = 1, UINT32 = 3, UINT64 = 4, INT8 = 5, INT32 = 7, FLOAT = 9 };
-enum { HEAD = 256, ENTRY = 32, NAME = 64 };
 
 /// What a chunk is made of, in the order of `chunks`.
 enum chunk {
@@ -35,20 +33,20 @@ static const struct {
     unsigned char type, bytes; ///< of a number
     unsigned columns;
 } chunks[CHUNKS] = {
-    [STEP] = {"configuration/step", UINT64, 8, 1},
-    [DIMENSIONS] = {"configuration/dimensions", UINT8, 1, 1},
-    [BOX] = {"configuration/box", FLOAT, 4, 1},
-    [COUNT] = {"particles/N", UINT32, 4, 1},
-    [TYPES] = {"particles/types", INT8, 1, NAME},
-    [TYPE] = {"particles/typeid", UINT32, 4, 1},
-    [MASS] = {"particles/mass", FLOAT, 4, 1},
-    [POSITION] = {"particles/position", FLOAT, 4, 3},
-    [VELOCITY] = {"particles/velocity", FLOAT, 4, 3},
-    [IMAGE] = {"particles/image", INT32, 4, 3},
-    [BONDS] = {"bonds/N", UINT32, 4, 1},
-    [BOND_TYPES] = {"bonds/types", INT8, 1, NAME},
-    [BOND_TYPE] = {"bonds/typeid", UINT32, 4, 1},
-    [BOND] = {"bonds/group", UINT32, 4, 2},
+    [STEP] = {"configuration/step", GSD_UINT64, 8, 1},
+    [DIMENSIONS] = {"configuration/dimensions", GSD_UINT8, 1, 1},
+    [BOX] = {"configuration/box", GSD_FLOAT, 4, 1},
+    [COUNT] = {"particles/N", GSD_UINT32, 4, 1},
+    [TYPES] = {"particles/types", GSD_INT8, 1, GSD_NAME},
+    [TYPE] = {"particles/typeid", GSD_UINT32, 4, 1},
+    [MASS] = {"particles/mass", GSD_FLOAT, 4, 1},
+    [POSITION] = {"particles/position", GSD_FLOAT, 4, 3},
+    [VELOCITY] = {"particles/velocity", GSD_FLOAT, 4, 3},
+    [IMAGE] = {"particles/image", GSD_INT32, 4, 3},
+    [BONDS] = {"bonds/N", GSD_UINT32, 4, 1},
+    [BOND_TYPES] = {"bonds/types", GSD_INT8, 1, GSD_NAME},
+    [BOND_TYPE] = {"bonds/typeid", GSD_UINT32, 4, 1},
+    [BOND] = {"bonds/group", GSD_UINT32, 4, 2},
 };
 
 // Numbers -----------------------------------------------------------------------------------------
@@ -136,7 +134,7 @@ static void put_types(const struct snapshot *snapshot, FILE *stream) {
         size_t k = 0;
         while (k < snapshot->count && mf_snapshot_type(snapshot, k) != type)
             k++;
-        put_text(stream, k < snapshot->count ? mf_snapshot_type_name(snapshot, k) : "", NAME);
+        put_text(stream, k < snapshot->count ? mf_snapshot_type_name(snapshot, k) : "", GSD_NAME);
     }
 }
 
@@ -172,7 +170,7 @@ static void put_numbers(const struct snapshot *snapshot, enum chunk chunk, FILE 
     else if (chunk == BONDS)
         put(stream, count_bonds(snapshot->topology), 4);
     else if (chunk == BOND_TYPES)
-        put_text(stream, "bond", NAME);
+        put_text(stream, "bond", GSD_NAME);
     else if (chunk == BOND)
         put_bonds(snapshot->topology, stream);
     else
@@ -193,13 +191,13 @@ static void print_head(uint64_t index, FILE *stream) {
     put(stream, 0x65DF65DF65DF65DF, 8);
     put(stream, index, 8);
     put(stream, CHUNKS, 8); // entries, of which those at the end may be empty
-    put(stream, index + (uint64_t)CHUNKS * ENTRY, 8);
+    put(stream, index + (uint64_t)CHUNKS * GSD_ENTRY, 8);
     put(stream, CHUNKS, 8); // names, of up to 64 bytes each
     put(stream, 1 << 16 | 4, 4);
     put(stream, 2 << 16, 4);
-    put_text(stream, "mesofit", NAME);
-    put_text(stream, "hoomd", NAME);
-    put_text(stream, "", HEAD - 2 * NAME - 48);
+    put_text(stream, "mesofit", GSD_NAME);
+    put_text(stream, "hoomd", GSD_NAME);
+    put_text(stream, "", GSD_HEAD - 2 * GSD_NAME - 48);
 }
 
 static void print_entry(const struct snapshot *snapshot, int chunk, uint64_t at, int id,
@@ -214,7 +212,7 @@ static void print_entry(const struct snapshot *snapshot, int chunk, uint64_t at,
 }
 
 static void print(const struct snapshot *snapshot, FILE *stream) {
-    uint64_t at = HEAD;
+    uint64_t at = GSD_HEAD;
     size_t names = 0;
     int written = 0;
     for (int chunk = 0; chunk < CHUNKS; chunk++)
@@ -223,20 +221,20 @@ static void print(const struct snapshot *snapshot, FILE *stream) {
     for (int chunk = 0; chunk < CHUNKS; chunk++)
         if (rows_of(snapshot, (enum chunk)chunk) > 0)
             put_numbers(snapshot, (enum chunk)chunk, stream);
-    at = HEAD;
+    at = GSD_HEAD;
     for (int chunk = 0; chunk < CHUNKS; chunk++) {
         if (rows_of(snapshot, (enum chunk)chunk) > 0)
             print_entry(snapshot, chunk, at, written++, stream);
         at += bytes_of(snapshot, (enum chunk)chunk);
     }
-    put_text(stream, "", (size_t)(CHUNKS - written) * ENTRY);
+    put_text(stream, "", (size_t)(CHUNKS - written) * GSD_ENTRY);
     for (int chunk = 0; chunk < CHUNKS; chunk++)
         if (rows_of(snapshot, (enum chunk)chunk) > 0) {
             fputs(chunks[chunk].name, stream);
             putc('\0', stream);
             names += strlen(chunks[chunk].name) + 1;
         }
-    put_text(stream, "", (size_t)CHUNKS * NAME - names);
+    put_text(stream, "", (size_t)CHUNKS * GSD_NAME - names);
 }
 
 const struct snapshot_format mf_snapshot_gsd = {.name = "gsd", .suffix = "gsd", .print = print};

@@ -6,16 +6,14 @@
 // HOOMD writes those of all frames only if "momentum" is dynamic. Its units are those of the
 // simulation, which nothing tells.
 #include "base/memory.h"
+#include "io/gsd.h"
 #include "trajectory/binary.h"
 #include "trajectory/trajectory.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { HEAD = 256, ENTRY = 32, NAME = 64, LARGEST_VERSION = 2 };
-
-/// Types of numbers, as the file has them.
-enum { UINT8 = 1, UINT32 = 3, UINT64 = 4, INT8 = 5, INT32 = 7, FLOAT = 9, CHARACTER = 11 };
+enum { LARGEST_VERSION = 2 };
 
 enum chunk {
     STEP,
@@ -39,18 +37,18 @@ static const struct {
     int type;
     size_t bytes, columns;
 } chunks[CHUNKS] = {
-    [STEP] = {"configuration/step", UINT64, 8, 1},
-    [DIMENSIONS] = {"configuration/dimensions", UINT8, 1, 1},
-    [BOX] = {"configuration/box", FLOAT, 4, 1},
-    [COUNT] = {"particles/N", UINT32, 4, 1},
-    [TYPES] = {"particles/types", INT8, 1, 0},
-    [TYPE] = {"particles/typeid", UINT32, 4, 1},
-    [MASS] = {"particles/mass", FLOAT, 4, 1},
-    [POSITION] = {"particles/position", FLOAT, 4, 3},
-    [VELOCITY] = {"particles/velocity", FLOAT, 4, 3},
-    [IMAGE] = {"particles/image", INT32, 4, 3},
-    [BOND] = {"bonds/group", UINT32, 4, 2},
-    [CONSTRAINT] = {"constraints/group", UINT32, 4, 2},
+    [STEP] = {"configuration/step", GSD_UINT64, 8, 1},
+    [DIMENSIONS] = {"configuration/dimensions", GSD_UINT8, 1, 1},
+    [BOX] = {"configuration/box", GSD_FLOAT, 4, 1},
+    [COUNT] = {"particles/N", GSD_UINT32, 4, 1},
+    [TYPES] = {"particles/types", GSD_INT8, 1, 0},
+    [TYPE] = {"particles/typeid", GSD_UINT32, 4, 1},
+    [MASS] = {"particles/mass", GSD_FLOAT, 4, 1},
+    [POSITION] = {"particles/position", GSD_FLOAT, 4, 3},
+    [VELOCITY] = {"particles/velocity", GSD_FLOAT, 4, 3},
+    [IMAGE] = {"particles/image", GSD_INT32, 4, 3},
+    [BOND] = {"bonds/group", GSD_UINT32, 4, 2},
+    [CONSTRAINT] = {"constraints/group", GSD_UINT32, 4, 2},
 };
 
 struct gsd {
@@ -76,7 +74,7 @@ static bool recognise(const unsigned char *begin, size_t size) {
 // The file ----------------------------------------------------------------------------------------
 
 static const unsigned char *entry(const struct gsd *gsd, size_t k) {
-    return gsd->index.data + k * ENTRY;
+    return gsd->index.data + k * GSD_ENTRY;
 }
 
 static uint64_t frame_of(const struct gsd *gsd, size_t k) {
@@ -97,14 +95,14 @@ static void find_names(struct gsd *gsd, const struct bytes *list, unsigned versi
         for (int k = 0; k < CHUNKS; k++)
             if (strlen(chunks[k].name) == length && memcmp(chunks[k].name, name, length) == 0)
                 gsd->id[k] = id;
-        at += version == 1 ? NAME : length + 1;
+        at += version == 1 ? GSD_NAME : length + 1;
     }
 }
 
 /// Entries of frames in their order, up to the first that is not used.
 static enum status check_index(struct trajectory *trajectory) {
     struct gsd *const gsd = trajectory->state;
-    const size_t all = gsd->index.size / ENTRY;
+    const size_t all = gsd->index.size / GSD_ENTRY;
     while (gsd->entries < all && binary_long(entry(gsd, gsd->entries) + 16, false) != 0)
         gsd->entries++;
     for (size_t k = 0; k < gsd->entries; k++)
@@ -137,18 +135,18 @@ static enum status read_head(struct trajectory *trajectory, struct bytes *head,
                              struct bytes *names) {
     struct source *const source = &trajectory->source;
     struct gsd *const gsd = trajectory->state;
-    TRY(mf_source_take(source, head, HEAD));
+    TRY(mf_source_take(source, head, GSD_HEAD));
     const unsigned char *const at = head->data;
     const unsigned version = binary_word(at + 44, false) >> 16;
     if (version > LARGEST_VERSION)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: GSD of version %u; 1 and 2 are read",
                               trajectory->file, version);
-    if (strncmp((const char *)at + 112, "hoomd", NAME) != 0)
+    if (strncmp((const char *)at + 112, "hoomd", GSD_NAME) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: GSD of the schema \"%.63s\"; hoomd is read",
                               trajectory->file, (const char *)at + 112);
     TRY(take_at(source, &gsd->index, binary_long(at + 8, false), binary_long(at + 16, false),
-                ENTRY));
-    TRY(take_at(source, names, binary_long(at + 24, false), binary_long(at + 32, false), NAME));
+                GSD_ENTRY));
+    TRY(take_at(source, names, binary_long(at + 24, false), binary_long(at + 32, false), GSD_NAME));
     find_names(gsd, names, version);
     return check_index(trajectory);
 }
@@ -190,8 +188,8 @@ static const unsigned char *find(const struct gsd *gsd, uint64_t frame, enum chu
 
 /// Characters are bytes, and what writes indices says uint32 or int32.
 static bool fits(int type, int wanted) {
-    return type == wanted || (type == CHARACTER && wanted == INT8) ||
-           (type == INT32 && wanted == UINT32);
+    return type == wanted || (type == GSD_CHARACTER && wanted == GSD_INT8) ||
+           (type == GSD_INT32 && wanted == GSD_UINT32);
 }
 
 /// Append the numbers of a chunk, or of that of frame 0, of `rows` rows, 0: any.
