@@ -32,7 +32,8 @@ static double error_of(const struct inversion_state *state, size_t n) {
     const struct comoments *counts = &state->replicas.counts;
     const double scatter =
         fmax(mf_comoments_covariance(counts, bin, bin), state->target.counts[bin]);
-    return sqrt(scatter * state->inefficiency / counts->count + pow(state->target.error[bin], 2));
+    return sqrt(scatter * state->bin_inefficiency[n] / counts->count +
+                pow(state->target.error[bin], 2));
 }
 
 /// Where the target of a group has few counts, the logarithm of a few is mostly noise, which would

@@ -51,8 +51,8 @@ enum status mf_imc_response_variance(const struct inversion_state *state, double
         squares += covariance[a * known + a] *
                    pow(logarithms[state->grid.known_point[a]] / temperature, 2);
     for (size_t a = 0; a < known; a++)
-        variance[a] = (covariance[a * known + a] * squares + state->excess[a] * state->excess[a]) /
-                      independent;
+        variance[a] = (covariance[a * known + a] * squares + state->excess[a] * state->excess[a]) *
+                      state->bin_inefficiency[a] / (state->inefficiency * independent);
 done:
     mf_memory_free(logarithms);
     return status;

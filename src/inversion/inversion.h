@@ -114,7 +114,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
                                 const struct inverse_listener *listener) MUST_USE;
 
 /// Whether samples that have not settled do for a step: all that is asked for is so far off that
-/// what has not settled is a third of it at most. A potential that is far off may freeze a liquid
+/// what has not settled is half of it at most. A potential that is far off may freeze a liquid
 /// or make it cavitate, which takes very long and gives no better direction to the target. Tested:
 /// test_inversion_equilibrium.
 bool mf_inversion_gives_direction(const struct inversion_state *state);

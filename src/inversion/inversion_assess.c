@@ -163,33 +163,62 @@ void mf_inversion_find_factor(const struct inversion_state *state,
     }
 }
 
+/// Samples that count as one independent, of each pair type by itself: where chains among single
+/// beads forget slowly, these do not.
+static void find_inefficiencies(struct inversion_state *state, struct inversion_section *section) {
+    const struct potential_grid *grid = &state->grid;
+    double sum = 0;
+    for (size_t block = 0, first = 0; block < grid->blocks; first += grid->known_of[block++]) {
+        const size_t *bin = grid->known_bin + first, count = grid->known_of[block];
+        if (first < section->known || first >= section->known + section->known_count)
+            continue;
+        // Blocks of samples do not see what lasts longer than they do.
+        const double found =
+            fmax(mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, bin, count),
+                 mf_replicas_inefficiency(&state->replicas, 1, bin, count));
+        for (size_t a = first; a < first + count; a++)
+            state->bin_inefficiency[a] = found;
+        sum += found * (double)count;
+    }
+    section->inefficiency = section->known_count > 0 ? sum / (double)section->known_count : 1;
+}
+
+/// Mean over the bins of a section of the variance of their target, in its units.
+static double mean_target_variance(const struct inversion_state *state,
+                                   const struct inversion_section *section) {
+    double sum = 0;
+    for (size_t a = section->known; a < section->known + section->known_count; a++)
+        if (state->grid.seen[a])
+            sum += mf_inversion_target_variance(state, a) /
+                   pow(state->target.unit[state->grid.known_bin[a]], 2);
+    return sum / (double)section->bins;
+}
+
 /// Of one section; returns its χ².
 static double assess(struct inversion_state *state, struct inversion_section *section) {
     const struct comoments *counts = &state->replicas.counts;
     const size_t *known_bin = state->grid.known_bin;
-    const size_t *known = known_bin + section->known;
-    // Blocks do not see what lasts longer than they do.
-    section->inefficiency = fmax(
-        mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, known, section->known_count),
-        mf_replicas_inefficiency(&state->replicas, 1, known, section->known_count));
-    const double independent = counts->count / section->inefficiency;
     const double bins = (double)section->bins;
-    double sum = 0, own = 0, both = 0, whole = 0, alone = 0, followed = 0, seen = 0;
+    const double mean = mean_target_variance(state, section);
+    double sum = 0, own = 0, both = 0, whole = 0, alone = 0, followed = 0, seen = 0, wanted = 0;
+    find_inefficiencies(state, section);
     for (size_t n = section->bin; n < section->bin + section->bins; n++)
         sum += pow((counts->mean[n] - state->target.counts[n]) / state->target.unit[n], 2);
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = known_bin[a];
         const double unit = state->target.unit[bin] * state->target.unit[bin];
         // An empty bin still has the uncertainty of one count.
-        const double sampled =
-            fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) / independent;
+        const double sampled = fmax(mf_comoments_covariance(counts, bin, bin), 1 / counts->count) *
+                               state->bin_inefficiency[a] / counts->count;
+        const double target = mf_inversion_target_variance(state, a);
         const double common = state->target.common ? state->target.common[a] : 0;
         state->excess[a] = counts->mean[bin] - state->target.counts[bin];
-        state->variance[a] = sampled + mf_inversion_target_variance(state, a);
+        state->variance[a] = sampled + target;
         if (!state->grid.seen[a])
             continue;
         seen++;
         own += sampled / unit;
+        wanted += sampled / fmax(unit, mean > 0 ? target / mean : 0);
         alone += sampled / state->variance[a];
         followed += state->pool.samples > 0 ? state->pool.variance[a] / state->variance[a] : 0;
         both += state->variance[a] / unit;
@@ -206,7 +235,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
     section->own_misfit = seen > 0 ? alone / seen : 0;
     // The potential follows the noise of the samples that it was made from.
     section->probable = find_probable(state, section) * (1 + (seen > 0 ? followed / seen : 0));
-    section->own_noise = sqrt(own / bins) / section->peak;
+    section->own_noise = sqrt(wanted / bins) / section->peak;
     // p of a group need not be known better than that of its target, which has as many bins.
     section->precision = state->parameters->precision;
     if (section->kind != TARGET_RDF)

@@ -24,7 +24,7 @@ const struct field mf_inversion_fields[] = {
              "stationary"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 64, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
-     .help = "least samples of each replica; doubled until the noise is \"precision\" or a third "
+     .help = "least samples of each replica; doubled until the noise is \"precision\" or half "
              "of the error"},
     {"every", FIELD_INTEGER, MEMBER(every), .initial = 2, .minimum = 1, .maximum = 1e6,
      .unit = "sweeps", .help = "least interval between samples"},

@@ -9,7 +9,7 @@
 /// Samples are doubled until their noise is this share of what is off, each bin in units of its
 /// error, or as small as was asked for: pairs that are rare, of which little is known, then do
 /// not decide how many samples the others need.
-static const double noise_share = 1.0 / 3;
+static const double noise_share = 0.5;
 
 /// A gradient below this many times its noise is hardly more than that: what g is still off is out
 /// of reach of the coefficients.

@@ -73,6 +73,7 @@ static enum status allocate(struct inversion_state *state) {
     NEW_ARRAY(state->groups, state->grid.groups);
     NEW_ARRAY(state->excess, known);
     NEW_ARRAY(state->variance, known);
+    NEW_ARRAY(state->bin_inefficiency, known);
     NEW_ARRAY(state->pool.excess, known);
     NEW_ARRAY(state->pool.variance, known);
     NEW_ARRAY(state->pool.phi, state->grid.points);
@@ -157,11 +158,11 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     mf_inversion_response_clear(&state->response);
     mf_memory_free(state->target.shape);
     mf_memory_free(state->groups);
-    double *arrays[] = {state->target.ideal,  state->target.unit, state->target.counts,
-                        state->target.error,  state->target.min,  state->target.common,
-                        state->excess,        state->variance,    state->pool.excess,
-                        state->pool.variance, state->pool.phi,    state->pressure.slope,
-                        state->inside.g};
+    double *arrays[] = {state->target.ideal,   state->target.unit,   state->target.counts,
+                        state->target.error,   state->target.min,    state->target.common,
+                        state->excess,         state->variance,      state->bin_inefficiency,
+                        state->pool.excess,    state->pool.variance, state->pool.phi,
+                        state->pressure.slope, state->inside.g};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }

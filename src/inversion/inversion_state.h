@@ -72,6 +72,7 @@ struct inversion_state {
     struct inversion_interaction interaction;
     struct replicas replicas;
     double *excess, *variance;          ///< of S in the known bins, shape [known]
+    double *bin_inefficiency;           ///< the same of the bin's pair type or group
     double inefficiency;                ///< the largest of all sections
     struct inversion_response response; ///< of S to the potential, by C
     struct inversion_pool pool;
