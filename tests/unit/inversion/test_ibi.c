@@ -20,7 +20,7 @@ struct scene {
     bool seen[BINS], well_known[BINS];
     double ideal[BINS], min[BINS], target[BINS], error[BINS], mean[BINS];
     double comoment[BINS * BINS];
-    double step[BINS];
+    double step[BINS], inefficiency[BINS];
 };
 
 static void make(struct scene *scene, double rare) {
@@ -29,7 +29,8 @@ static void make(struct scene *scene, double rare) {
                             .place = {RARE, FULL},
                             .seen = {true, true},
                             .well_known = {false, true},
-                            .ideal = {1, 1}};
+                            .ideal = {1, 1},
+                            .inefficiency = {1, 1}};
     for (int k = 0; k < BINS; k++) {
         scene->min[k] = 0.3 / SAMPLES;
         scene->target[k] = (k == RARE ? 1 : 1000) * rare / SAMPLES;
@@ -45,7 +46,7 @@ static void make(struct scene *scene, double rare) {
                                                  .min = scene->min,
                                                  .counts = scene->target,
                                                  .error = scene->error},
-                                      .inefficiency = 1};
+                                      .bin_inefficiency = scene->inefficiency};
     state->replicas.counts = (struct comoments){
         .size = BINS, .count = SAMPLES, .mean = scene->mean, .comoment = scene->comoment};
 }

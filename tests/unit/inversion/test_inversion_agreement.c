@@ -15,22 +15,24 @@ struct made {
     struct inverse_problem problem;
     struct inversion_parameters parameters;
     struct inversion_state state;
-    size_t known_bin[BINS];
+    size_t known_bin[BINS], known_of[1];
     bool seen[BINS];
     double expected[BINS], sampled[BINS]; ///< by the truth, and by the potential
     double mean[BINS], comoment[BINS * BINS], unit[BINS], target[BINS], error[BINS];
-    double excess[BINS], variance[BINS];
+    double excess[BINS], variance[BINS], inefficiency[BINS];
 };
 
 /// Bins from r = 0 on, so that the first ones have few pairs; those of a wrong potential are off by
 /// a part of them.
 static void make(struct made *made, gsl_rng *rng, double frames, double wrong) {
-    *made = (struct made){0};
+    *made = (struct made){.known_of = {BINS}};
     struct inversion_state *state = &made->state;
     *state = (struct inversion_state){.problem = &made->problem,
                                       .parameters = &made->parameters,
                                       .bins = BINS,
-                                      .grid = {.known = BINS,
+                                      .grid = {.blocks = 1,
+                                               .known_of = made->known_of,
+                                               .known = BINS,
                                                .pairs_known = BINS,
                                                .known_bin = made->known_bin,
                                                .seen = made->seen},
@@ -44,7 +46,8 @@ static void make(struct made *made, gsl_rng *rng, double frames, double wrong) {
                                                  .counts = made->target,
                                                  .error = made->error},
                                       .excess = made->excess,
-                                      .variance = made->variance};
+                                      .variance = made->variance,
+                                      .bin_inefficiency = made->inefficiency};
     for (size_t k = 0; k < BINS; k++) {
         made->known_bin[k] = k;
         made->seen[k] = true;
@@ -157,6 +160,39 @@ static void test_noise_of_a_bin_is_that_of_the_counts_that_are_expected(void **s
     gsl_rng_free(rng);
 }
 
+/// Replicas that differ by three times what their samples let expect count a tenth, and only the
+/// pair type that does.
+static void test_noise_is_that_of_each_pair_type(void **state) {
+    (void)state;
+    enum { REPLICAS = 8, HALF = BINS / 2 };
+    static struct made made;
+    static double block[REPLICAS][REPLICAS_BLOCKS * BINS];
+    size_t known_of[] = {HALF, HALF};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 100, 0);
+    struct replicas *replicas = &made.state.replicas;
+    made.state.grid.blocks = 2;
+    made.state.grid.known_of = known_of;
+    replicas->count = REPLICAS;
+    for (size_t k = 0; k < REPLICAS; k++) {
+        const double apart = 3 * gsl_ran_gaussian(rng, 1);
+        replicas->member[k].block = block[k];
+        for (size_t n = 0; n < REPLICAS_BLOCKS * BINS; n++) {
+            const size_t a = n % BINS;
+            const double whole = sqrt(made.sampled[a] * REPLICAS / SAMPLES);
+            block[k][n] = made.mean[a] + whole * (sqrt(REPLICAS_BLOCKS) * gsl_ran_gaussian(rng, 1) +
+                                                  (a < HALF ? 0 : apart));
+        }
+    }
+    mf_inversion_assess(&made.state);
+    print_message("%.2f and %.2f samples as one\n", made.inefficiency[0], made.inefficiency[HALF]);
+    assert_true(made.inefficiency[0] < 1.3);
+    assert_true(made.inefficiency[HALF] > 3 && made.inefficiency[HALF] < 30);
+    assert_true(made.inefficiency[HALF - 1] == made.inefficiency[0]);
+    assert_true(made.inefficiency[BINS - 1] == made.inefficiency[HALF]);
+    gsl_rng_free(rng);
+}
+
 /// 3 % more of all pairs are 3 standard errors in the mean of the bins, unless the target's factor
 /// may be off by as much; then the factor is found by what it makes, and by nothing else.
 static void test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be(void **state) {
@@ -235,6 +271,7 @@ int main(void) {
         cmocka_unit_test(test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be),
         cmocka_unit_test(test_bound_of_agreement_is_that_of_the_bins_not_of_few_samples),
         cmocka_unit_test(test_error_of_a_factor_is_no_noise_of_bins),
+        cmocka_unit_test(test_noise_is_that_of_each_pair_type),
         cmocka_unit_test(test_noise_of_a_bin_is_that_of_the_counts_that_are_expected),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

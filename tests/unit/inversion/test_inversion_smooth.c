@@ -190,16 +190,21 @@ static void test_result_of_a_method_that_forgets_goes_the_rest_of_the_way(void *
 /// A target of one count where three are expected, of nine where three are, and of 90 of 100.
 static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
     enum { THREE = 3 };
-    size_t bin[] = {0, 1, 2};
+    size_t bin[] = {0, 1, 2}, known_of[] = {THREE};
     bool seen[] = {true, true, true}, well_known[] = {false, false, true};
     double target[] = {1, 9, 90}, error[] = {1, 3, 9}, mean[] = {3, 3, 100}, unit[] = {1, 1, 1};
-    double comoment[THREE * THREE] = {0}, excess[THREE], variance[THREE];
+    double comoment[THREE * THREE] = {0}, excess[THREE], variance[THREE], inefficiency[THREE];
     struct inverse_problem problem = {0};
     struct inversion_parameters parameters = {0};
     struct inversion_state made = {
         .problem = &problem,
         .parameters = &parameters,
-        .grid = {.known = THREE, .known_bin = bin, .seen = seen, .well_known = well_known},
+        .grid = {.blocks = 1,
+                 .known_of = known_of,
+                 .known = THREE,
+                 .known_bin = bin,
+                 .seen = seen,
+                 .well_known = well_known},
         .assessment = {.sections = 1,
                        .section[0] = {.kind = mf_bonded_distribution_kind(BONDED_BOND),
                                       .bins = THREE,
@@ -207,7 +212,8 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
                                       .peak = 100}},
         .target = {.ideal = unit, .unit = unit, .counts = target, .error = error},
         .excess = excess,
-        .variance = variance};
+        .variance = variance,
+        .bin_inefficiency = inefficiency};
     (void)state;
     made.replicas.counts =
         (struct comoments){.size = THREE, .count = 1e6, .mean = mean, .comoment = comoment};
