@@ -13,12 +13,12 @@ struct inversion_section {
     double peak;               ///< largest value of a group's target; of g 1
     double inefficiency;       ///< samples that count as one independent
     double rms, noise;         ///< of what the factors of targets do not explain, in peaks
-    double own_noise;          ///< of the samples alone, of which a bin whose target is noisier than
-                               ///< others bears as much more
-    double misfit;             ///< χ² by bin of the samples, with the noise that they expect
-    double own_misfit;         ///< what the noise of the samples alone adds to it
-    double probable;           ///< the same at most, of what agrees but for noise
-    double precision;          ///< at which that is small enough
+    double own_noise;  ///< of the samples alone, of which a bin whose target is noisier than
+                       ///< others bears as much more
+    double misfit;     ///< χ² by bin of the samples, with the noise that they expect
+    double own_misfit; ///< what the noise of the samples alone adds to it
+    double probable;   ///< the same at most, of what agrees but for noise
+    double precision;  ///< at which that is small enough
 };
 
 enum { INVERSION_MAX_SECTIONS = 1 + INVERSE_MAX_BONDED };

@@ -177,8 +177,8 @@ static void add_drift(struct inversion *inversion, const double *weight, double 
         add_square(inversion, pow(inversion->course.band.drifts.ramp.drift / variance, 2), scratch);
 }
 
-/// A fit that ends before it is stationary has drifted along what its targets hardly determine: the
-/// drift is an error.
+/// A fit that has met its targets more than once has walked along what they hardly determine: each
+/// potential on its way is possible, and the way is an error.
 static void add_walk(struct inversion *inversion, double *scratch) {
     const struct potential_grid *grid = inversion_grid(inversion);
     for (size_t a = 0; a < grid->known; a++) {
@@ -392,7 +392,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, birge, step));
     find_drifts(inversion, step, weight, scratch);
-    if (inversion->course.not_stationary) {
+    if (inversion->course.has_walked) {
         add_walk(inversion, scratch);
         take_constants_off(inversion);
     }

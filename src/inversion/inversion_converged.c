@@ -145,8 +145,8 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     const uint32_t min = grid->groups > 0 ? MIN_MET_WITH_GROUPS : 1;
     if (drifts->met == 1 && grid->points > 0)
         memcpy(inversion->course.met_phi, inversion->course.phi, grid->points * sizeof(double));
-    if (!must_settle(inversion) || (drifts->met >= min && has_settled(inversion, min)))
-        return true;
-    inversion->course.not_stationary = grid->groups > 0 && drifts->met >= INVERSION_MAX_DRIFTS;
-    return inversion->course.not_stationary;
+    const bool settled = drifts->met >= min && has_settled(inversion, min);
+    const bool ends = !must_settle(inversion) || settled || drifts->met >= INVERSION_MAX_DRIFTS;
+    inversion->course.has_walked = ends && drifts->met > 1;
+    return ends;
 }

@@ -135,7 +135,7 @@ static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
     for (int n = 0; n < INVERSION_MAX_DRIFTS - 1; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(inversion, true));
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_true(inversion->course.not_stationary);
+    assert_true(inversion->course.has_walked);
     assert_true(met[0] == 5);
 }
 
