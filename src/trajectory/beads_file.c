@@ -129,8 +129,7 @@ static enum status print_xyz(struct beads_file *file, const struct trajectory_fr
     return STATUS_OK;
 }
 
-// A dump of LAMMPS (manual, command `dump`, units real)
-// --------------------------------------------
+// A dump of LAMMPS (manual, command `dump`), its units and times as lammps_dump.h says ------------
 
 /// Bounds of a tilted box are those of the upright one around it.
 static enum status print_lammps_box(FILE *stream, const struct trajectory_frame *beads) {
@@ -161,12 +160,10 @@ static enum status print_lammps_box(FILE *stream, const struct trajectory_frame 
 static enum status print_lammps(struct beads_file *file, const struct trajectory_frame *beads) {
     const bool masses = has_masses(file->mapping);
     FILE *const stream = file->output.stream;
-    if (file->frames == 0)
-        fprintf(stream, "ITEM: UNITS\nreal\n");
+    fprintf(stream, "ITEM: TIMESTEP\n%lld\nITEM: NUMBER OF ATOMS", step_of(file, beads));
     if (!isnan(beads->time))
-        fprintf(stream, "ITEM: TIME\n%.9g\n", beads->time * femtosecond);
-    fprintf(stream, "ITEM: TIMESTEP\n%lld\nITEM: NUMBER OF ATOMS\n%zu\n", step_of(file, beads),
-            beads->atoms);
+        fprintf(stream, " time=%.9g", beads->time * femtosecond);
+    fprintf(stream, " units=real\n%zu\n", beads->atoms);
     TRY(print_lammps_box(stream, beads));
     fprintf(stream, "ITEM: ATOMS id mol type element%s xu yu zu%s\n", masses ? " mass" : "",
             beads->has_velocities ? " vx vy vz" : "");
@@ -187,11 +184,9 @@ static enum status print_lammps(struct beads_file *file, const struct trajectory
 
 // The file ----------------------------------------------------------------------------------------
 
-static const struct beads_format formats[] = {{".gro", print_gro},
-                                              {".xyz", print_xyz},
-                                              {".extxyz", print_xyz},
-                                              {".lammpstrj", print_lammps},
-                                              {".dump", print_lammps}};
+static const struct beads_format formats[] = {
+    {".gro", print_gro},          {".xyz", print_xyz},           {".extxyz", print_xyz},
+    {".lammpstrj", print_lammps}, {".lammpsdump", print_lammps}, {".dump", print_lammps}};
 
 static enum status find_format(struct beads_file *file, const char *path) {
     const char *const point = strrchr(path, '.');
