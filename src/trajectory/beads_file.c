@@ -2,6 +2,7 @@
 #include "trajectory/beads_file.h"
 
 #include "base/memory.h"
+#include "io/xtc.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -182,11 +183,38 @@ static enum status print_lammps(struct beads_file *file, const struct trajectory
     return STATUS_OK;
 }
 
+// XTC ---------------------------------------------------------------------------------------------
+
+static void place_bead(const void *context, size_t n, double position[3]) {
+    const struct beads_file *const file = context;
+    memcpy(position, file->beads->position[file->order[n]], 3 * sizeof *position);
+}
+
+static enum status print_xtc(struct beads_file *file, const struct trajectory_frame *beads) {
+    struct xtc_frame frame = {.atoms = beads->atoms,
+                              .step = step_of(file, beads),
+                              .time = isnan(beads->time) ? (double)file->frames : beads->time,
+                              .place = place_bead,
+                              .context = file};
+    memcpy(frame.box, beads->box, sizeof frame.box);
+    for (size_t n = 0; n < beads->atoms; n++)
+        for (int d = 0; d < 3; d++)
+            if (!(fabs(beads->position[n][d]) < XTC_FARTHEST))
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: frame %zu: a bead is more than %g nm away, and .xtc has "
+                                      "no room for that: --beads takes .xyz or .lammpstrj, too",
+                                      beads->file, beads->number, XTC_FARTHEST);
+    file->beads = beads;
+    mf_xtc_write(&frame, file->output.stream);
+    return STATUS_OK;
+}
+
 // The file ----------------------------------------------------------------------------------------
 
 static const struct beads_format formats[] = {
     {".gro", print_gro},          {".xyz", print_xyz},           {".extxyz", print_xyz},
-    {".lammpstrj", print_lammps}, {".lammpsdump", print_lammps}, {".dump", print_lammps}};
+    {".lammpstrj", print_lammps}, {".lammpsdump", print_lammps}, {".dump", print_lammps},
+    {".xtc", print_xtc}};
 
 static enum status find_format(struct beads_file *file, const char *path) {
     const char *const point = strrchr(path, '.');

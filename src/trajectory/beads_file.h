@@ -11,10 +11,11 @@
 /// not be moved.
 struct beads_file {
     const struct beads_format *format;
-    const struct mapping *mapping;     ///< borrowed
-    const struct structure *structure; ///< of its atoms, borrowed
-    size_t *order;                     ///< shape [beads]: as the atoms stand, and not by type
-    size_t frames;                     ///< that were written
+    const struct mapping *mapping;        ///< borrowed
+    const struct structure *structure;    ///< of its atoms, borrowed
+    size_t *order;                        ///< shape [beads]: as the atoms stand, and not by type
+    size_t frames;                        ///< that were written
+    const struct trajectory_frame *beads; ///< that are being written, borrowed
     struct output output;
 };
 
