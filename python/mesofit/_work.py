@@ -336,7 +336,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
     box : float or three of them, optional [nm]
         Edges of a box, for files that have none.
     beads : path, optional
-        File for the beads' trajectory: .gro, .xyz or .lammpstrj.
+        File for the beads' trajectory: .gro, .xtc, .gsd, .xyz or .lammpstrj.
     folder, threads, force, progress
         As of `simulate`.
 

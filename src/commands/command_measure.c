@@ -60,7 +60,7 @@ static const struct command_option options[] = {
     [FILE_TIME_STEP] = {"--file-time-step", "T", "time step of frames without times [ps]"},
     [FILE_GROUP] = {"--file-group", "NAME", "particle group of H5MD"},
     [BOX] = {"--box", "LX,LY,LZ", "box of files without one [nm]"},
-    [BEADS] = {"--beads", "FILE", "the beads' trajectory (.gro, .xyz, …)"},
+    [BEADS] = {"--beads", "FILE", "the beads' trajectory (.gro, .xtc, …)"},
     {NULL, NULL, NULL},
 };
 

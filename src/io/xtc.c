@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/// Whole numbers in a nm; the most atoms of a run; how far levels go above the first.
-enum { PRECISION = 1000, LONGEST_RUN = 8, LEVELS_USED = 8 };
+/// Whole numbers in a nm; the most atoms of a run.
+enum { PRECISION = 1000, LONGEST_RUN = 8 };
 
 const int32_t mf_xtc_radix[XTC_LEVELS] = {
     0,        0,        0,       0,       0,       0,       0,       0,       0,       8,
@@ -42,7 +42,7 @@ struct packer {
     uint64_t range[3];
     bool apart;         ///< a range is too wide for three digits in one number
     unsigned bits;      ///< of an atom that is told in full
-    int first, top;     ///< levels
+    int first;          ///< level, and the finest
     FILE *stream;       ///< NULL: bits are counted
     uint64_t written;   ///< bits
     unsigned char byte; ///< that is not full yet
@@ -156,8 +156,8 @@ static int find_change(const struct packer *packer, size_t next, int level, cons
         return 0;
     place_of(packer, next, a);
     place_of(packer, next + 1, b);
-    const int wanted = level_of(apart(a, b)), had = run->more ? level_of(run->widest) : wanted;
-    if (wanted > level && wanted <= packer->top && (unsigned)wanted < packer->bits)
+    const int wanted = level_of(apart(a, b)), had = run->more ? level_of(run->widest) : level;
+    if (wanted > level && (unsigned)wanted < packer->bits)
         return 1;
     return wanted < level && had < level && level > packer->first ? -1 : 0;
 }
@@ -214,8 +214,6 @@ static void find_ranges(struct packer *packer) {
     packer->bits =
         bit_length((unsigned __int128)packer->range[0] * packer->range[1] * packer->range[2]);
     packer->first = level_of(nearest);
-    packer->top =
-        packer->first + LEVELS_USED < XTC_LEVELS ? packer->first + LEVELS_USED : XTC_LEVELS - 1;
 }
 
 static void put_packed(const struct xtc_frame *frame, FILE *stream) {

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "io/xtc.h"
+#include "trajectory/beads_gsd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@
 struct beads_format {
     const char *extension; ///< with its point
     enum status (*print)(struct beads_file *file, const struct trajectory_frame *beads);
+    void (*finish)(struct beads_file *file); ///< after the last frame, or NULL
 };
 
 /// Å in a nm, fs in a ps, and Å/fs in a nm/ps.
@@ -212,9 +214,11 @@ static enum status print_xtc(struct beads_file *file, const struct trajectory_fr
 // The file ----------------------------------------------------------------------------------------
 
 static const struct beads_format formats[] = {
-    {".gro", print_gro},          {".xyz", print_xyz},           {".extxyz", print_xyz},
-    {".lammpstrj", print_lammps}, {".lammpsdump", print_lammps}, {".dump", print_lammps},
-    {".xtc", print_xtc}};
+    {".gro", print_gro, NULL},           {".xyz", print_xyz, NULL},
+    {".extxyz", print_xyz, NULL},        {".lammpstrj", print_lammps, NULL},
+    {".lammpsdump", print_lammps, NULL}, {".dump", print_lammps, NULL},
+    {".xtc", print_xtc, NULL},           {".gsd", mf_beads_gsd_print, mf_beads_gsd_finish},
+};
 
 static enum status find_format(struct beads_file *file, const char *path) {
     const char *const point = strrchr(path, '.');
@@ -225,7 +229,7 @@ static enum status find_format(struct beads_file *file, const char *path) {
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "--beads %.200s: expected a name that ends with .gro, .xyz, .extxyz, "
-                          ".lammpstrj or .dump",
+                          ".xtc, .gsd, .lammpstrj or .dump",
                           path);
 }
 
@@ -283,6 +287,8 @@ enum status mf_beads_file_restart(struct beads_file *file) {
 }
 
 enum status mf_beads_file_commit(struct beads_file *file) {
+    if (file->format->finish)
+        file->format->finish(file);
     return mf_output_commit(&file->output);
 }
 
