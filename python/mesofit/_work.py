@@ -284,8 +284,9 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
             map: Content | None = None, molecules: Content | None = None,
             begin: float | None = None, end: float | None = None, every: float | None = None,
             range: float | None = None, bins: int | None = None, q_range: float | None = None,
-            waves: int | None = None, window: float | None = None, escape: float | None = None,
-            velocities: str | None = None, static: bool = False,
+            waves: int | None = None, density_profile: str | None = None,
+            profile_bins: int | None = None, window: float | None = None,
+            escape: float | None = None, velocities: str | None = None, static: bool = False,
             temperature: float | None = None, units: str | None = None,
             allow_truncated: bool = False, file_units: str | None = None,
             file_time_step: float | None = None, file_group: str | None = None,
@@ -314,6 +315,10 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         Of S(q), else 4 π density^(1/3); 0: no S(q).
     waves : int, optional
         Most wave vectors in a bin of S(q), else 10.
+    density_profile : "x", "y" or "z", optional
+        Axis of the box along which the density of each type is measured.
+    profile_bins : int, optional
+        Of it; else 100.
     window : float, optional [ps]
         Of MSD, VACF and escape times; else a tenth of the time, 100 frames at most.
     escape : float, optional [nm]
@@ -331,7 +336,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
     box : float or three of them, optional [nm]
         Edges of a box, for files that have none.
     beads : path, optional
-        File for the beads' trajectory: .gro, .xyz or .lammpstrj.
+        File for the beads' trajectory: .gro, .xtc, .gsd, .xyz or .lammpstrj.
     folder, threads, force, progress
         As of `simulate`.
 
@@ -357,9 +362,10 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         map=None if map is None else Path(_lend(map, {}, "map", memory)),
         molecules=None if molecules is None else Path(_lend(molecules, {}, "molecules", memory)),
         begin=begin, end=end, every=every, range=range, bins=bins, q_range=q_range, waves=waves,
-        window=window, escape=escape, velocities=velocities, static=static,
-        temperature=temperature, units=units, allow_truncated=allow_truncated,
-        file_units=file_units, file_time_step=file_time_step, file_group=file_group,
+        density_profile=density_profile, profile_bins=profile_bins, window=window,
+        escape=escape, velocities=velocities, static=static, temperature=temperature,
+        units=units, allow_truncated=allow_truncated, file_units=file_units,
+        file_time_step=file_time_step, file_group=file_group,
         box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),
         beads=None if beads is None else Path(beads), threads=threads)
     try:

@@ -219,3 +219,32 @@ def test_real_universe_is_measured_as_its_file(name, tmp_path):
     assert scenes[0].keys() == scenes[1].keys()
     assert ("temperature" in scenes[0]) == (name == "water.trr")
     assert scenes[0].get("temperature", 0) == pytest.approx(scenes[1].get("temperature", 0))
+
+
+@pytest.mark.parametrize("name, keys", [
+    ("beads.gro", {}), ("beads.xtc", {"topology_format": "MINIMAL"}), ("beads.gsd", {}),
+    ("beads.xyz", {}), ("beads.lammpstrj", {"format": "LAMMPSDUMP"})])
+def test_beads_are_opened_by_mdanalysis(name, keys, tmp_path):
+    """Centres of mass as MDAnalysis finds them of the atoms, in each file that is written."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mda = pytest.importorskip("MDAnalysis")
+        if name.endswith("gsd"):
+            pytest.importorskip("gsd")
+        shutil.copy(WATER / "water.trr", tmp_path)
+        atoms = mda.Universe(str(WATER / "water.gro"), str(tmp_path / "water.trr"))
+        atoms.add_TopologyAttr("masses", np.tile([15.999, 1.008, 1.008], len(atoms.residues)))
+        mesofit.measure(WATER / "water.trr", WATER / "water.gro", static=True, threads=1,
+                        q_range=0, beads=tmp_path / name, folder=tmp_path / "out")
+        beads = mda.Universe(*[str(tmp_path / name)] * (2 if name.endswith("xtc") else 1), **keys)
+        assert len(beads.trajectory) == (1 if name.endswith("gro") else 2)
+        for frame, expected in zip(beads.trajectory, atoms.trajectory):
+            edges = expected.dimensions[:3]
+            scale = 10 if name.endswith("gsd") else 1  # taken as it is, which is in nm
+            apart = scale * frame.positions - atoms.atoms.center_of_mass(compound="residues")
+            apart -= edges * np.rint(apart / edges)
+            assert np.abs(apart).max() < (0.0055 if name.endswith("xtc") else 5e-5)
+            if not name.endswith("xyz"):
+                assert np.allclose(scale * frame.dimensions[:3], edges, rtol=1e-6)
+            if name.endswith("xtc"):
+                assert frame.time == pytest.approx(expected.time, abs=1e-6)

@@ -7,7 +7,7 @@ enum { ENGINE, BANDS, PROJECT, TO };
 
 static const struct command_option options[] = {
     [ENGINE] = {"--engine", "lammps|hoomd|espresso|openmm|gromacs|dl_poly|votca",
-                "program that will run the result"},
+                "program for the result"},
     [BANDS] = {"--bands", NULL, "also the potential minus and plus one standard error"},
     [PROJECT] = {"--project", NULL,
                  "the nearest friction that the engine has; the deviation is simulated"},

@@ -17,6 +17,8 @@ enum {
     BINS,
     Q_RANGE,
     WAVES,
+    PROFILE,
+    PROFILE_BINS,
     WINDOW,
     ESCAPE,
     VELOCITIES,
@@ -32,33 +34,33 @@ enum {
 };
 
 static const struct command_option options[] = {
-    [STRUCTURE] = {"-s", "FILE", "names, residues, masses (.gro, .pdb, .top, .psf, …)"},
+    [STRUCTURE] = {"-s", "FILE", "names, residues, masses (.gro, .top, .psf, …)"},
     [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
     [MOLECULES] = {"--molecules", "FILE",
                    "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},
-    [BEGIN] = {"--begin", "T", "first time that is used [ps]; else the begin of equilibrium"},
-    [END] = {"--end", "T", "last time that is used [ps]"},
-    [EVERY] = {"--every", "T", "interval between the frames used [ps]"},
+    [BEGIN] = {"--begin", "T", "first time [ps]; else where equilibrium begins"},
+    [END] = {"--end", "T", "last time [ps]"},
+    [EVERY] = {"--every", "T", "time between frames [ps]"},
     [RANGE] = {"--range", "R", "range of g(r) [nm]; else most of half the box"},
     [BINS] = {"--bins", "N", "bins of g(r); else 0.01 nm wide"},
     [Q_RANGE] = {"--q-range", "Q", "range of S(q) [1/nm]; else 4 pi density^(1/3); 0: no S(q)"},
-    [WAVES] = {"--waves", "N", "most wave vectors in a bin of S(q); else 10"},
+    [WAVES] = {"--waves", "N", "most waves in a bin of S(q); else 10"},
+    [PROFILE] = {"--density-profile", "x|y|z", "density of each type along an axis"},
+    [PROFILE_BINS] = {"--profile-bins", "N", "its bins; else 100"},
     [WINDOW] = {"--window", "T",
                 "window of MSD, VACF, escape times [ps]; else a tenth, 100 frames at most"},
-    [ESCAPE] = {"--escape", "R",
-                "distance at which a pair has escaped [nm]; else 1.6 density^(-1/3)"},
+    [ESCAPE] = {"--escape", "R", "distance of an escaped pair [nm]; else 1.6 density^(-1/3)"},
     [VELOCITIES] = {"--velocities", "file|differences|none",
                     "velocities of the VACF; else the file's, if any"},
-    [STATIC] = {"--static", NULL, "no motion: frames of any times, in any order"},
-    [TEMPERATURE] = {"--temperature", "T",
-                     "temperature of the target [K]; else that of the velocities"},
+    [STATIC] = {"--static", NULL, "no motion: frames in any order"},
+    [TEMPERATURE] = {"--temperature", "T", "temperature [K]; else that of the velocities"},
     [UNITS] = {"--units", "nm-ps|angstrom-fs", "units of the results (nm-ps)"},
-    [ALLOW_TRUNCATED] = {"--allow-truncated", NULL, "use a damaged file up to the damage"},
+    [ALLOW_TRUNCATED] = {"--allow-truncated", NULL, "use what is before damage"},
     [FILE_UNITS] = {"--file-units", "STYLE", "units of files without any: real, metal, …"},
     [FILE_TIME_STEP] = {"--file-time-step", "T", "time step of frames without times [ps]"},
     [FILE_GROUP] = {"--file-group", "NAME", "particle group of H5MD"},
     [BOX] = {"--box", "LX,LY,LZ", "box of files without one [nm]"},
-    [BEADS] = {"--beads", "FILE", "the beads' trajectory (.gro, .xyz, …)"},
+    [BEADS] = {"--beads", "FILE", "the beads' trajectory (.gro, .xtc, …)"},
     {NULL, NULL, NULL},
 };
 
@@ -123,6 +125,21 @@ static enum status read_box(const struct command_line *line, double box[3]) {
     return STATUS_OK;
 }
 
+static enum status read_profile(const struct command_line *line, struct measured_plan *plan) {
+    enum { USUAL_BINS = 100 };
+    const char *const axis = line->own[PROFILE];
+    if (axis == NULL && line->own[PROFILE_BINS])
+        return mf_status_fail(STATUS_BAD_INPUT, "--profile-bins is for --density-profile x|y|z");
+    for (int k = 0; axis && mf_density_profile_axes[k]; k++)
+        if (strcmp(axis, mf_density_profile_axes[k]) == 0) {
+            plan->profile_axis = k;
+            plan->profile_bins = USUAL_BINS;
+        }
+    if (axis && plan->profile_bins == 0)
+        return mf_status_fail(STATUS_BAD_INPUT, "--density-profile takes x, y or z");
+    return read_count(line, PROFILE_BINS, &plan->profile_bins);
+}
+
 static enum status read_request(const struct command_line *line, struct measure_request *request) {
     static const double above_zero = 1e-300;
     struct frames_plan *const frames = &request->frames;
@@ -138,6 +155,7 @@ static enum status read_request(const struct command_line *line, struct measure_
     TRY(read_number(line, Q_RANGE, 0, &request->measured.q_maximum));
     TRY(read_count(line, BINS, &request->measured.bins));
     TRY(read_count(line, WAVES, &request->measured.waves));
+    TRY(read_profile(line, &request->measured));
     TRY(read_choice(line, VELOCITIES, mf_measured_velocities,
                     &request->measured.motion.velocities));
     return read_choice(line, UNITS, mf_units_systems, &request->system);

@@ -31,6 +31,16 @@ static ssize_t write_bytes(void *context, const char *bytes, size_t count) {
     return (ssize_t)written;
 }
 
+/// For formats whose head says where their end stands.
+static int seek_byte(void *cookie, off64_t *offset, int whence) {
+    const struct output *const output = cookie;
+    const off64_t place = lseek64(output->file, *offset, whence);
+    if (place < 0)
+        return -1;
+    *offset = place;
+    return 0;
+}
+
 static int close_file(void *context) {
     struct output *output = context;
     const int result = close(output->file);
@@ -97,7 +107,8 @@ enum status mf_output_open(struct output *output, const char *path) {
     make_temporary(output);
     if (output->file >= 0)
         output->stream = fopencookie(
-            output, "wb", (cookie_io_functions_t){.write = write_bytes, .close = close_file});
+            output, "wb",
+            (cookie_io_functions_t){.write = write_bytes, .seek = seek_byte, .close = close_file});
     if (output->stream)
         return STATUS_OK;
     const int error = errno;

@@ -9,11 +9,15 @@
 #include <string.h>
 #include <unistd.h>
 
-const struct snapshot_format *const mf_snapshot_formats[] = {
-    &mf_snapshot_vtp,    &mf_snapshot_json, &mf_snapshot_extxyz,
-    &mf_snapshot_lammps, &mf_snapshot_gsd,  NULL};
-const char *const mf_snapshot_format_names[] = {"vtp",         "json", "extxyz",
-                                                "lammps-dump", "gsd",  NULL};
+const struct snapshot_format *const mf_snapshot_formats[] = {&mf_snapshot_vtp,
+                                                             &mf_snapshot_json,
+                                                             &mf_snapshot_extxyz,
+                                                             &mf_snapshot_lammps,
+                                                             &mf_snapshot_gsd,
+                                                             &mf_snapshot_xtc,
+                                                             NULL};
+const char *const mf_snapshot_format_names[] = {"vtp", "json", "extxyz", "lammps-dump",
+                                                "gsd", "xtc",  NULL};
 _Static_assert(sizeof mf_snapshot_formats / sizeof *mf_snapshot_formats == SNAPSHOT_FORMATS + 1 &&
                    sizeof mf_snapshot_format_names == sizeof mf_snapshot_formats,
                "every format has a name");

@@ -89,8 +89,8 @@ struct snapshot_format {
 };
 
 extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_extxyz,
-    mf_snapshot_lammps, mf_snapshot_gsd;
-enum { SNAPSHOT_FORMATS = 5 };
+    mf_snapshot_lammps, mf_snapshot_gsd, mf_snapshot_xtc;
+enum { SNAPSHOT_FORMATS = 6 };
 
 /// All formats, NULL-terminated, and their names.
 extern const struct snapshot_format *const mf_snapshot_formats[];

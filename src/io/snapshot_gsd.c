@@ -49,25 +49,6 @@ static const struct {
     [BOND] = {"bonds/group", GSD_UINT32, 4, 2},
 };
 
-// Numbers -----------------------------------------------------------------------------------------
-
-static void put(FILE *stream, uint64_t bits, int bytes) {
-    for (int k = 0; k < bytes; k++)
-        putc((int)(bits >> 8 * k & 0xff), stream);
-}
-
-static void put_float(FILE *stream, double number) {
-    const float value = (float)number;
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    put(stream, bits, sizeof bits);
-}
-
-static void put_text(FILE *stream, const char *text, size_t width) {
-    for (size_t k = 0, length = strlen(text); k < width; k++)
-        putc(k < length ? text[k] : '\0', stream);
-}
-
 // What a snapshot has -----------------------------------------------------------------------------
 
 static const struct snapshot_column *find(const struct snapshot *snapshot, const char *name) {
@@ -123,9 +104,9 @@ static void put_vector(const struct snapshot *snapshot, const char *name, FILE *
                 d < column->components ? column->values[(size_t)d * snapshot->count + k] : 0;
             const double middle = place && d < column->components ? snapshot->box.length[d] / 2 : 0;
             if (column->whole)
-                put(stream, (uint32_t)(int32_t)value, 4);
+                mf_gsd_put(stream, (uint32_t)(int32_t)value, 4);
             else
-                put_float(stream, value - middle);
+                mf_gsd_put_float(stream, value - middle);
         }
 }
 
@@ -134,7 +115,8 @@ static void put_types(const struct snapshot *snapshot, FILE *stream) {
         size_t k = 0;
         while (k < snapshot->count && mf_snapshot_type(snapshot, k) != type)
             k++;
-        put_text(stream, k < snapshot->count ? mf_snapshot_type_name(snapshot, k) : "", GSD_NAME);
+        mf_gsd_put_text(stream, k < snapshot->count ? mf_snapshot_type_name(snapshot, k) : "",
+                        GSD_NAME);
     }
 }
 
@@ -144,41 +126,42 @@ static void put_bonds(const struct topology *topology, FILE *stream) {
         for (int64_t m = 0; m < kind->count; m++)
             for (int t = 0; t < kind->terms[BONDED_BOND]; t++)
                 for (int end = 0; end < 2; end++)
-                    put(stream, topology_id(kind, m, kind->term[BONDED_BOND][t].bead[end]), 4);
+                    mf_gsd_put(stream, topology_id(kind, m, kind->term[BONDED_BOND][t].bead[end]),
+                               4);
     }
 }
 
 static void put_box(const struct box *box, FILE *stream) {
     for (int k = 0; k < 6; k++)
-        put_float(stream, k < box->dimensions ? box->length[k] : k == 2 ? 1 : 0);
+        mf_gsd_put_float(stream, k < box->dimensions ? box->length[k] : k == 2 ? 1 : 0);
 }
 
 static void put_numbers(const struct snapshot *snapshot, enum chunk chunk, FILE *stream) {
     const size_t rows = rows_of(snapshot, chunk);
     if (chunk == STEP)
-        put(stream, snapshot->step, 8);
+        mf_gsd_put(stream, snapshot->step, 8);
     else if (chunk == DIMENSIONS)
-        put(stream, (uint64_t)snapshot->box.dimensions, 1);
+        mf_gsd_put(stream, (uint64_t)snapshot->box.dimensions, 1);
     else if (chunk == BOX)
         put_box(&snapshot->box, stream);
     else if (chunk == COUNT)
-        put(stream, snapshot->count, 4);
+        mf_gsd_put(stream, snapshot->count, 4);
     else if (chunk == TYPES)
         put_types(snapshot, stream);
     else if (chunk == POSITION || chunk == VELOCITY || chunk == IMAGE)
         put_vector(snapshot, strrchr(chunks[chunk].name, '/') + 1, stream);
     else if (chunk == BONDS)
-        put(stream, count_bonds(snapshot->topology), 4);
+        mf_gsd_put(stream, count_bonds(snapshot->topology), 4);
     else if (chunk == BOND_TYPES)
-        put_text(stream, "bond", GSD_NAME);
+        mf_gsd_put_text(stream, "bond", GSD_NAME);
     else if (chunk == BOND)
         put_bonds(snapshot->topology, stream);
     else
         for (size_t k = 0; k < rows; k++)
             if (chunk == MASS)
-                put_float(stream, find(snapshot, "mass")->values[k]);
+                mf_gsd_put_float(stream, find(snapshot, "mass")->values[k]);
             else
-                put(stream, chunk == TYPE ? (uint64_t)mf_snapshot_type(snapshot, k) : 0, 4);
+                mf_gsd_put(stream, chunk == TYPE ? (uint64_t)mf_snapshot_type(snapshot, k) : 0, 4);
 }
 
 // The file ----------------------------------------------------------------------------------------
@@ -187,54 +170,35 @@ static size_t bytes_of(const struct snapshot *snapshot, enum chunk chunk) {
     return rows_of(snapshot, chunk) * chunks[chunk].columns * chunks[chunk].bytes;
 }
 
-static void print_head(uint64_t index, FILE *stream) {
-    put(stream, 0x65DF65DF65DF65DF, 8);
-    put(stream, index, 8);
-    put(stream, CHUNKS, 8); // entries, of which those at the end may be empty
-    put(stream, index + (uint64_t)CHUNKS * GSD_ENTRY, 8);
-    put(stream, CHUNKS, 8); // names, of up to 64 bytes each
-    put(stream, 1 << 16 | 4, 4);
-    put(stream, 2 << 16, 4);
-    put_text(stream, "mesofit", GSD_NAME);
-    put_text(stream, "hoomd", GSD_NAME);
-    put_text(stream, "", GSD_HEAD - 2 * GSD_NAME - 48);
-}
-
-static void print_entry(const struct snapshot *snapshot, int chunk, uint64_t at, int id,
-                        FILE *stream) {
-    put(stream, 0, 8); // the frame
-    put(stream, rows_of(snapshot, (enum chunk)chunk), 8);
-    put(stream, at, 8);
-    put(stream, chunks[chunk].columns, 4);
-    put(stream, (uint64_t)id, 2);
-    put(stream, chunks[chunk].type, 1);
-    put(stream, 0, 1);
-}
-
 static void print(const struct snapshot *snapshot, FILE *stream) {
     uint64_t at = GSD_HEAD;
     size_t names = 0;
     int written = 0;
     for (int chunk = 0; chunk < CHUNKS; chunk++)
         at += bytes_of(snapshot, (enum chunk)chunk);
-    print_head(at, stream);
+    mf_gsd_put_head(stream, at, CHUNKS, CHUNKS); // entries at the end may be empty
     for (int chunk = 0; chunk < CHUNKS; chunk++)
         if (rows_of(snapshot, (enum chunk)chunk) > 0)
             put_numbers(snapshot, (enum chunk)chunk, stream);
     at = GSD_HEAD;
     for (int chunk = 0; chunk < CHUNKS; chunk++) {
         if (rows_of(snapshot, (enum chunk)chunk) > 0)
-            print_entry(snapshot, chunk, at, written++, stream);
+            mf_gsd_put_entry(stream,
+                             &(struct gsd_entry){.rows = rows_of(snapshot, (enum chunk)chunk),
+                                                 .at = at,
+                                                 .columns = chunks[chunk].columns,
+                                                 .id = written++,
+                                                 .type = chunks[chunk].type});
         at += bytes_of(snapshot, (enum chunk)chunk);
     }
-    put_text(stream, "", (size_t)(CHUNKS - written) * GSD_ENTRY);
+    mf_gsd_put_text(stream, "", (size_t)(CHUNKS - written) * GSD_ENTRY);
     for (int chunk = 0; chunk < CHUNKS; chunk++)
         if (rows_of(snapshot, (enum chunk)chunk) > 0) {
             fputs(chunks[chunk].name, stream);
             putc('\0', stream);
             names += strlen(chunks[chunk].name) + 1;
         }
-    put_text(stream, "", (size_t)CHUNKS * GSD_NAME - names);
+    mf_gsd_put_text(stream, "", (size_t)CHUNKS * GSD_NAME - names);
 }
 
 const struct snapshot_format mf_snapshot_gsd = {.name = "gsd", .suffix = "gsd", .print = print};

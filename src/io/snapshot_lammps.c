@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // A text dump of LAMMPS, style custom, as OVITO and VMD read it and LAMMPS begins with it
-// (read_dump): manual, command `dump`. It says no units: its numbers are those of all snapshots.
+// (read_dump): manual, command `dump`; the time stands behind "ITEM: NUMBER OF ATOMS", where
+// MDAnalysis and old versions of OVITO, which know no "ITEM: TIME", do not mind it. It says no
+// units: its numbers are those of all snapshots.
 #include "io/snapshot.h"
 
 #include <string.h>
@@ -24,8 +26,8 @@ static void print_vector(const struct snapshot *snapshot, const struct snapshot_
 
 static void print_heading(const struct snapshot *snapshot, FILE *stream) {
     const struct box *box = &snapshot->box;
-    fprintf(stream, "ITEM: TIME\n%.10g\nITEM: TIMESTEP\n%llu\nITEM: NUMBER OF ATOMS\n%zu\n",
-            snapshot->time, (unsigned long long)snapshot->step, snapshot->count);
+    fprintf(stream, "ITEM: TIMESTEP\n%llu\nITEM: NUMBER OF ATOMS time=%.10g\n%zu\n",
+            (unsigned long long)snapshot->step, snapshot->time, snapshot->count);
     fprintf(stream, "ITEM: BOX BOUNDS pp pp pp\n");
     for (int d = 0; d < box->dimensions; d++)
         fprintf(stream, "0 %.10g\n", box->length[d]);

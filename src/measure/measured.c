@@ -124,6 +124,17 @@ static void plan_waves(struct measured *measured, const struct frame_box *box) {
                                                   .max = (size_t)plan->waves};
 }
 
+static enum status plan_profile(struct measured *measured) {
+    const struct mapping *const mapping = measured->mapping;
+    struct density_profile_plan plan = {.composition = measured->pairs.composition,
+                                        .bins = (size_t)measured->plan.profile_bins,
+                                        .axis = measured->plan.profile_axis,
+                                        .masses = true};
+    for (size_t k = 0; k < mapping->beads; k++)
+        plan.masses = plan.masses && isfinite(mapping->bead[k].mass);
+    return plan.bins == 0 ? STATUS_OK : mf_density_profile_init(&measured->profile, &plan);
+}
+
 static bool is_without_box(const struct trajectory_frame *frame) {
     bool periodic = false;
     for (int i = 0; i < 3; i++)
@@ -136,7 +147,8 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     enum status status = STATUS_OK;
     struct frame_box box;
     *measured = (struct measured){.plan = *plan, .mapping = mapping};
-    measured->in_vacuum = plan->molecules.molecules && is_without_box(first);
+    measured->in_vacuum =
+        plan->molecules.molecules && plan->profile_bins == 0 && is_without_box(first);
     if (!measured->in_vacuum)
         CHECK(mf_frame_box_find(&box, first));
     if (mapping->beads < 2)
@@ -151,6 +163,7 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     CHECK(find_shares(measured));
     CHECK(find_bins(measured, &box, first));
     plan_waves(measured, &box);
+    CHECK(plan_profile(measured));
     CHECK(mf_structure_factor_init(&measured->factor, &measured->waves, 0));
     const struct box cube = cube_of(box.volume);
     const struct rdf_bins bins = {.width = measured->pairs.range / (double)measured->pairs.bins,
@@ -187,6 +200,7 @@ void mf_measured_clear(struct measured *measured) {
     mf_rdf_clear(&measured->intermolecular.counted);
     mf_measured_molecules_clear(&measured->molecules);
     mf_structure_factor_clear(&measured->factor);
+    mf_density_profile_clear(&measured->profile);
     mf_measured_motion_clear(&measured->motion);
     mf_frame_features_clear(&measured->features);
     mf_series_clear(&measured->volume);
@@ -266,12 +280,28 @@ static void add_pairs(struct measured *measured, const struct measured_slot *slo
         mf_rdf_add(&measured->intermolecular.counted, slot->pairs.counts, stride, weight);
 }
 
+/// Slabs are parallel to the other two vectors of the box, and counted along its height.
+static void add_profile(struct measured *measured, const struct measured_slot *slot) {
+    const struct mapping *const mapping = measured->mapping;
+    const int axis = measured->plan.profile_axis;
+    const double density = (double)measured->profile.plan.bins / slot->box.volume;
+    if (measured->plan.profile_bins == 0)
+        return;
+    mf_density_profile_next(&measured->profile);
+    for (size_t k = 0; k < mapping->beads; k++)
+        density_profile_add(&measured->profile, (int)mapping->bead[k].type,
+                            0x1p-32 * (uint32_t)slot->place[axis][k], density,
+                            mapping->bead[k].mass);
+    measured->profile_length += slot->box.height[axis];
+}
+
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
     if (measured->in_vacuum) {
         measured->frames++;
         return mf_measured_molecules_add(&measured->molecules, &slot->beads);
     }
     add_pairs(measured, slot);
+    add_profile(measured, slot);
     if (slot->waves.numbers)
         mf_structure_factor_add(&measured->factor, slot->waves.numbers);
     measured->frames++;

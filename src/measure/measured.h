@@ -11,14 +11,17 @@
 #include "measure/frame_waves.h"
 #include "measure/measured_molecules.h"
 #include "measure/measured_motion.h"
+#include "observe/density_profile.h"
 #include "observe/rdf_observable.h"
 #include "trajectory/mapping.h"
 
 struct measured_plan {
-    double range;     ///< of g(r) [nm]
-    int64_t bins;     ///< of it
-    double q_maximum; ///< of S(q) [1/nm]; NAN: 4π ρ^(1/3); 0: it is not measured
-    int64_t waves;    ///< of one of its bins at most; 0: 10
+    double range;         ///< of g(r) [nm]
+    int64_t bins;         ///< of it
+    double q_maximum;     ///< of S(q) [1/nm]; NAN: 4π ρ^(1/3); 0: it is not measured
+    int64_t waves;        ///< of one of its bins at most; 0: 10
+    int profile_axis;     ///< of the density profile
+    int64_t profile_bins; ///< of it; 0: it is not measured
     struct measured_motion_plan motion;
     struct measured_molecules_plan molecules; ///< all zero: nobody tells of them
     int threads;
@@ -45,6 +48,8 @@ struct measured {
     struct measured_molecules molecules;
     struct density_waves_plan waves;
     struct structure_factor factor;
+    struct density_profile profile;
+    double profile_length; ///< of the box along it, over all frames [nm]
     struct measured_motion motion;
     struct frame_features features; ///< by which it is seen where equilibrium begins
     size_t frames;

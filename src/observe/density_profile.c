@@ -1,155 +1,161 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// Number density along an axis of the box, of each type: slabs, walls, interfaces. Errors are of
-// the scatter of blocks in time, which is that of correlated samples. Tested:
-// cli/test_density_profile.
+#include "observe/density_profile.h"
+
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "io/data_table.h"
-#include "observe/measure.h"
-#include "observe/sample_blocks.h"
 
-struct settings {
-    int axis;
-    int64_t bins;
-};
+#include <math.h>
+#include <string.h>
 
-struct state {
-    struct settings settings;
-    struct composition composition;
-    struct box box; ///< at the begin, by which distances are told
-    size_t row;     ///< types times bins
-    struct sample_blocks blocks;
-    double *sums; ///< shape [blocks, types, bins]: densities, over the samples of a block [1/λ^d]
-};
+/// 1 u/nm³ [g/cm³].
+static const double gram_per_cubic_centimetre = UNITS_ATOMIC_MASS * 1e3 / 1e-21;
 
-static void clear(void *state) {
-    struct state *s = state;
-    mf_sample_blocks_clear(&s->blocks);
-    mf_memory_free(s->sums);
-    *s = (struct state){0};
-}
-
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
-                         const struct measure_plan *plan) {
-    struct state *s = state;
-    *s = (struct state){.settings = *(const struct settings *)settings,
-                        .composition = simulation->setup.composition,
-                        .box = simulation->particles.box};
-    if (s->settings.axis >= s->box.dimensions)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "density_profile.axis: z; expected x or y in two dimensions");
-    s->row = (size_t)s->composition.types * (size_t)s->settings.bins;
-    TRY(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
-    TRY_ARRAY(s->sums, s->blocks.count * s->row);
+enum status mf_density_profile_init(struct density_profile *profile,
+                                    const struct density_profile_plan *plan) {
+    *profile = (struct density_profile){.plan = *plan};
+    profile->row = (size_t)plan->composition.types * plan->bins * (plan->masses ? 2 : 1);
+    TRY(mf_sample_blocks_init(&profile->blocks, plan->samples));
+    TRY_ARRAY(profile->sums, profile->blocks.count * profile->row);
     return STATUS_OK;
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
-    struct state *s = state;
-    const struct particles *const particles = &simulation->particles;
-    const size_t bins = (size_t)s->settings.bins;
-    const int axis = s->settings.axis;
-    const double one = (double)bins / mf_box_volume(&particles->box);
-    if (mf_sample_blocks_are_full(&s->blocks)) {
-        mf_sample_blocks_join(&s->blocks, s->sums, s->row);
-        mf_sample_blocks_double(&s->blocks);
-    }
-    double *const sums = s->sums + mf_sample_blocks_take(&s->blocks) * s->row;
-    for (size_t k = 0; k < particles->count; k++) {
-        const double share = particles->position[axis][k] / particles->box.length[axis];
-        const size_t bin = (size_t)((share - floor(share)) * (double)bins);
-        const int type = mf_composition_type(&s->composition, particles->id[k]);
-        sums[(size_t)type * bins + (bin < bins ? bin : bins - 1)] += one;
-    }
-    return STATUS_OK;
+void mf_density_profile_clear(struct density_profile *profile) {
+    mf_sample_blocks_clear(&profile->blocks);
+    mf_memory_free(profile->sums);
+    *profile = (struct density_profile){0};
 }
 
-static size_t spans(void *state, struct memory_span *spans) {
-    struct state *s = state;
-    const size_t n = mf_sample_blocks_spans(&s->blocks, spans);
-    spans[n] = (struct memory_span){s->sums, s->blocks.count * s->row * sizeof *s->sums};
+void mf_density_profile_next(struct density_profile *profile) {
+    struct sample_blocks *const blocks = &profile->blocks;
+    if (mf_sample_blocks_are_full(blocks)) {
+        mf_sample_blocks_join(blocks, profile->sums, profile->row);
+        mf_sample_blocks_double(blocks);
+    }
+    profile->block = profile->sums + mf_sample_blocks_take(blocks) * profile->row;
+}
+
+size_t mf_density_profile_spans(struct density_profile *profile, struct memory_span *spans) {
+    const size_t n = mf_sample_blocks_spans(&profile->blocks, spans);
+    const size_t size = profile->blocks.count * profile->row * sizeof *profile->sums;
+    spans[n] = (struct memory_span){profile->sums, size};
     return n + 1;
 }
 
-/// Mean over all samples, and the standard error of the means of blocks.
-static double find_mean(const struct state *s, size_t k, double *error) {
-    const size_t whole = mf_sample_blocks_whole(&s->blocks);
-    struct running_mean means = {0};
+/// A curve over the bins: of one type, or of the sum of several.
+struct profile_curve {
+    size_t first, types; ///< parts of a row
+    double beads;        ///< of them, in all bins
+    double unit;
+    double *density, *error; ///< shape [bins]
+};
+
+static double sum_at(const struct density_profile *profile, const struct profile_curve *curve,
+                     size_t block, size_t bin) {
+    const size_t bins = profile->plan.bins;
+    const double *const row = profile->sums + block * profile->row;
     double sum = 0;
-    for (size_t b = 0; b < s->blocks.count; b++)
-        sum += s->sums[b * s->row + k];
-    for (size_t b = 0; b < whole; b++)
-        mf_statistics_add(&means, s->sums[b * s->row + k] / s->blocks.samples[b]);
-    *error = whole > 1 ? mf_statistics_standard_error(&means) : NAN;
-    return sum / (double)s->blocks.taken;
+    for (size_t type = curve->first; type < curve->first + curve->types; type++)
+        sum += row[type * bins + bin];
+    return sum * curve->unit;
 }
 
-/// density_profile.tsv: the middle of a bin, and density and error of each type.
-static enum status write(const void *state, const struct observable_results *results) {
-    enum { MAX = 1 + 2 * COMPOSITION_MAX_TYPES };
-    static const char *const axes[] = {"x[lambda]", "y[lambda]", "z[lambda]"};
-    const struct state *s = state;
-    const size_t bins = (size_t)s->settings.bins;
-    const char *const unit = s->box.dimensions == 3 ? "1/lambda^3" : "1/lambda^2";
-    struct data_column columns[MAX];
-    char names[MAX][2 * COMPOSITION_NAME_SIZE + 32];
-    OWNED double *values = NULL;
-    TRY_ARRAY(values, bins + 2 * s->row);
-    for (size_t k = 0; k < bins; k++)
-        values[k] = ((double)k + 0.5) * s->box.length[s->settings.axis] / (double)bins;
-    columns[0] = (struct data_column){axes[s->settings.axis], values, "%.6g"};
-    for (size_t k = 0; k < s->row; k++)
-        values[bins + k] = find_mean(s, k, &values[bins + s->row + k]);
-    mf_statistics_mark_unknown_errors(values + bins + s->row, s->row);
-    for (int type = 0; type < s->composition.types; type++) {
-        const bool mixed = composition_is_mixed(&s->composition);
-        const char *const name = mixed ? s->composition.name[type] : "";
-        const size_t at = bins + (size_t)type * bins;
-        const int n = 1 + 2 * type;
-        snprintf(names[n], sizeof names[n], "density%s%s[%s]", mixed ? "_" : "", name, unit);
-        snprintf(names[n + 1], sizeof names[n + 1], "error%s%s[%s]", mixed ? "_" : "", name, unit);
-        columns[n] = (struct data_column){names[n], values + at, "%.6g"};
-        columns[n + 1] = (struct data_column){names[n + 1], values + at + s->row, "%.6g"};
+/// Where nothing was: what one visit would have made.
+static void mark_empty_bins(const struct density_profile *profile,
+                            const struct profile_curve *curve) {
+    double density = 0, squares = 0;
+    for (size_t k = 0; k < profile->plan.bins; k++) {
+        density += curve->density[k];
+        squares += curve->error[k] * curve->error[k];
     }
-    return mf_observable_table(results, "density_profile.tsv", columns,
-                               (size_t)(1 + 2 * s->composition.types), bins);
+    const double one = density / (curve->beads * (double)profile->blocks.taken);
+    const double visit = one > 0 ? fmax(1, squares / (one * density)) * one : NAN;
+    mf_statistics_mark_unknown_errors(curve->error, profile->plan.bins);
+    for (size_t k = 0; k < profile->plan.bins; k++)
+        if (curve->density[k] == 0 && !isnan(curve->error[k]))
+            curve->error[k] = visit;
 }
 
-/// Nanoseconds of a particle.
-static const double particle_cost = 5;
-
-static void explain(const void *settings, const struct simulation_setup *setup, double every,
-                    struct stages *stages) {
-    (void)setup;
-    mf_stages_add(stages, "density profile", true, particle_cost / every,
-                  "%lld bins, one step in %.0f",
-                  (long long)((const struct settings *)settings)->bins, every);
+/// Mean over all samples, and the error by the blocks.
+static enum status find_curve(const struct density_profile *profile,
+                              const struct profile_curve *curve) {
+    const size_t bins = profile->plan.bins, whole = mf_sample_blocks_whole(&profile->blocks);
+    OWNED double *series = NULL;
+    TRY_ARRAY(series, bins * whole + 1);
+    for (size_t k = 0; k < bins; k++) {
+        double sum = 0;
+        for (size_t b = 0; b < profile->blocks.count; b++)
+            sum += sum_at(profile, curve, b, k);
+        for (size_t b = 0; b < whole; b++)
+            series[k * whole + b] = sum_at(profile, curve, b, k) / profile->blocks.samples[b];
+        curve->density[k] = sum / (double)profile->blocks.taken;
+    }
+    mf_statistics_correlated_errors(series, whole, 1, bins, curve->error);
+    mark_empty_bins(profile, curve);
+    return STATUS_OK;
 }
 
-static const char *const axes[] = {"x", "y", "z", NULL};
-
-static const struct field fields[] = {
-    {"axis", FIELD_CHOICE, offsetof(struct settings, axis), .choices = axes, .initial = 2,
-     .unit = "", .help = "axis"},
-    {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 100, .minimum = 1,
-     .maximum = 100000, .unit = "", .help = "number"},
-    FIELD_END,
+/// Columns that are made, and their names.
+struct columns {
+    struct data_column column[1 + 2 * (2 * COMPOSITION_MAX_TYPES + 1)];
+    char name[1 + 2 * (2 * COMPOSITION_MAX_TYPES + 1)][2 * COMPOSITION_NAME_SIZE + 32];
+    size_t count;
 };
-static const char *const files[] = {"density_profile.tsv", NULL};
 
-const struct observable mf_density_profile = {
-    .name = "density_profile",
-    .summary = "number density along an axis",
-    .fields = fields,
-    .settings_size = sizeof(struct settings),
-    .state_size = sizeof(struct state),
-    .begin = begin,
-    .clear = clear,
-    .sample = sample,
-    .spans = spans,
-    .write = write,
-    .explain = explain,
-    .stage = "density profile",
-    .files = files,
-};
+/// "density_A[unit]" and "error_A[unit]".
+static void name_columns(struct columns *columns, const char *const words[2], const char *type,
+                         const char *unit, const struct profile_curve *curve) {
+    for (int k = 0; k < 2; k++) {
+        const size_t n = columns->count++;
+        snprintf(columns->name[n], sizeof columns->name[n], "%s%s%s[%s]", words[k],
+                 type[0] ? "_" : "", type, unit);
+        columns->column[n] =
+            (struct data_column){columns->name[n], k ? curve->error : curve->density, "%.6g"};
+    }
+}
+
+static enum status add_curves(const struct density_profile *profile, int dimensions, double *values,
+                              struct columns *columns) {
+    static const char *const number[] = {"density", "error"}, *const mass[] = {"mass_density",
+                                                                               "mass_error"};
+    const struct composition *const composition = &profile->plan.composition;
+    const size_t bins = profile->plan.bins, types = (size_t)composition->types;
+    const bool mixed = composition_is_mixed(composition);
+    const size_t parts = profile->plan.masses ? 2 * types : types;
+    for (size_t part = 0; part < parts + (mixed && profile->plan.masses); part++) {
+        const bool weighed = part >= types, all = part == parts;
+        const char *const type = mixed && !all ? composition->name[part % types] : "";
+        const struct profile_curve curve = {.first = all ? types : part,
+                                            .types = all ? types : 1,
+                                            .beads =
+                                                all ? (double)mf_composition_particles(composition)
+                                                    : (double)composition->count[part % types],
+                                            .unit = weighed ? gram_per_cubic_centimetre : 1,
+                                            .density = values + 2 * part * bins,
+                                            .error = values + (2 * part + 1) * bins};
+        TRY(find_curve(profile, &curve));
+        name_columns(columns, weighed ? mass : number, type,
+                     weighed           ? "g/cm^3"
+                     : dimensions == 3 ? "1/lambda^3"
+                                       : "1/lambda^2",
+                     &curve);
+    }
+    return STATUS_OK;
+}
+
+enum status mf_density_profile_write(const struct density_profile *profile, double length,
+                                     int dimensions, const struct observable_results *results) {
+    const size_t bins = profile->plan.bins;
+    struct columns columns = {.count = 1};
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, bins + 2 * (profile->row + bins));
+    for (size_t k = 0; k < bins; k++)
+        values[k] = ((double)k + 0.5) * length / (double)bins;
+    snprintf(columns.name[0], sizeof columns.name[0], "%s[lambda]",
+             mf_density_profile_axes[profile->plan.axis]);
+    columns.column[0] = (struct data_column){columns.name[0], values, "%.6g"};
+    TRY(add_curves(profile, dimensions, values + bins, &columns));
+    return mf_observable_table(results, "density_profile.tsv", columns.column, columns.count, bins);
+}
+
+const char *const mf_density_profile_axes[] = {"x", "y", "z", NULL};

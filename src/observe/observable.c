@@ -3,6 +3,7 @@
 
 #include "observe/bonded_distribution.h"
 #include "observe/flow_field.h"
+#include "observe/density_profile.h"
 #include "observe/flow_profile.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"
@@ -10,8 +11,7 @@
 
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
-extern const struct observable mf_clusters, mf_density_profile, mf_local_density, mf_collisions,
-    mf_conserved;
+extern const struct observable mf_clusters, mf_local_density, mf_collisions, mf_conserved;
 extern const struct observable mf_molecule_sizes, mf_molecule_motion;
 
 #define BONDED(NAME, kind, ...) &mf_bonded_distribution_##kind,
@@ -29,7 +29,7 @@ const struct observable *const mf_observables[] = {
     &mf_flow_field,
     &mf_polarity_observable,
     &mf_clusters,
-    &mf_density_profile,
+    &mf_density_profile_observable,
     &mf_local_density,
     &mf_shear_viscosity,
     BONDED_LIST(BONDED) & mf_molecule_sizes,

@@ -200,7 +200,7 @@ static const struct field fields[] = {
      .maximum = 1e9, .unit = "steps", .help = "interval between snapshots"},
     {"formats", FIELD_CHOICES, offsetof(struct settings, formats), .initial = 1,
      .choices = mf_snapshot_format_names, .unit = "",
-     .help = "ParaView, JSON (also for \"placement\"), extended XYZ, LAMMPS dump, GSD"},
+     .help = "ParaView, JSON (also for \"placement\"), extended XYZ, LAMMPS dump, GSD, XTC"},
     {"solvent", FIELD_CHOICE, offsetof(struct settings, solvent), .choices = no_or_yes,
      .initial = 0, .unit = "",
      .help = "include the solvent of collision-dynamics, as the last type"},

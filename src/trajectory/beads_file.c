@@ -2,6 +2,8 @@
 #include "trajectory/beads_file.h"
 
 #include "base/memory.h"
+#include "io/xtc.h"
+#include "trajectory/beads_gsd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,6 +13,7 @@
 struct beads_format {
     const char *extension; ///< with its point
     enum status (*print)(struct beads_file *file, const struct trajectory_frame *beads);
+    void (*finish)(struct beads_file *file); ///< after the last frame, or NULL
 };
 
 /// Å in a nm, fs in a ps, and Å/fs in a nm/ps.
@@ -129,8 +132,7 @@ static enum status print_xyz(struct beads_file *file, const struct trajectory_fr
     return STATUS_OK;
 }
 
-// A dump of LAMMPS (manual, command `dump`, units real)
-// --------------------------------------------
+// A dump of LAMMPS (manual, command `dump`), its units and times as lammps_dump.h says ------------
 
 /// Bounds of a tilted box are those of the upright one around it.
 static enum status print_lammps_box(FILE *stream, const struct trajectory_frame *beads) {
@@ -161,12 +163,10 @@ static enum status print_lammps_box(FILE *stream, const struct trajectory_frame 
 static enum status print_lammps(struct beads_file *file, const struct trajectory_frame *beads) {
     const bool masses = has_masses(file->mapping);
     FILE *const stream = file->output.stream;
-    if (file->frames == 0)
-        fprintf(stream, "ITEM: UNITS\nreal\n");
+    fprintf(stream, "ITEM: TIMESTEP\n%lld\nITEM: NUMBER OF ATOMS", step_of(file, beads));
     if (!isnan(beads->time))
-        fprintf(stream, "ITEM: TIME\n%.9g\n", beads->time * femtosecond);
-    fprintf(stream, "ITEM: TIMESTEP\n%lld\nITEM: NUMBER OF ATOMS\n%zu\n", step_of(file, beads),
-            beads->atoms);
+        fprintf(stream, " time=%.9g", beads->time * femtosecond);
+    fprintf(stream, " units=real\n%zu\n", beads->atoms);
     TRY(print_lammps_box(stream, beads));
     fprintf(stream, "ITEM: ATOMS id mol type element%s xu yu zu%s\n", masses ? " mass" : "",
             beads->has_velocities ? " vx vy vz" : "");
@@ -185,13 +185,40 @@ static enum status print_lammps(struct beads_file *file, const struct trajectory
     return STATUS_OK;
 }
 
+// XTC ---------------------------------------------------------------------------------------------
+
+static void place_bead(const void *context, size_t n, double position[3]) {
+    const struct beads_file *const file = context;
+    memcpy(position, file->beads->position[file->order[n]], 3 * sizeof *position);
+}
+
+static enum status print_xtc(struct beads_file *file, const struct trajectory_frame *beads) {
+    struct xtc_frame frame = {.atoms = beads->atoms,
+                              .step = step_of(file, beads),
+                              .time = isnan(beads->time) ? (double)file->frames : beads->time,
+                              .place = place_bead,
+                              .context = file};
+    memcpy(frame.box, beads->box, sizeof frame.box);
+    for (size_t n = 0; n < beads->atoms; n++)
+        for (int d = 0; d < 3; d++)
+            if (!(fabs(beads->position[n][d]) < XTC_FARTHEST))
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: frame %zu: a bead is more than %g nm away, and .xtc has "
+                                      "no room for that: --beads takes .xyz or .lammpstrj, too",
+                                      beads->file, beads->number, XTC_FARTHEST);
+    file->beads = beads;
+    mf_xtc_write(&frame, file->output.stream);
+    return STATUS_OK;
+}
+
 // The file ----------------------------------------------------------------------------------------
 
-static const struct beads_format formats[] = {{".gro", print_gro},
-                                              {".xyz", print_xyz},
-                                              {".extxyz", print_xyz},
-                                              {".lammpstrj", print_lammps},
-                                              {".dump", print_lammps}};
+static const struct beads_format formats[] = {
+    {".gro", print_gro, NULL},           {".xyz", print_xyz, NULL},
+    {".extxyz", print_xyz, NULL},        {".lammpstrj", print_lammps, NULL},
+    {".lammpsdump", print_lammps, NULL}, {".dump", print_lammps, NULL},
+    {".xtc", print_xtc, NULL},           {".gsd", mf_beads_gsd_print, mf_beads_gsd_finish},
+};
 
 static enum status find_format(struct beads_file *file, const char *path) {
     const char *const point = strrchr(path, '.');
@@ -202,7 +229,7 @@ static enum status find_format(struct beads_file *file, const char *path) {
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "--beads %.200s: expected a name that ends with .gro, .xyz, .extxyz, "
-                          ".lammpstrj or .dump",
+                          ".xtc, .gsd, .lammpstrj or .dump",
                           path);
 }
 
@@ -260,6 +287,8 @@ enum status mf_beads_file_restart(struct beads_file *file) {
 }
 
 enum status mf_beads_file_commit(struct beads_file *file) {
+    if (file->format->finish)
+        file->format->finish(file);
     return mf_output_commit(&file->output);
 }
 

@@ -11,16 +11,18 @@
 /// not be moved.
 struct beads_file {
     const struct beads_format *format;
-    const struct mapping *mapping;     ///< borrowed
-    const struct structure *structure; ///< of its atoms, borrowed
-    size_t *order;                     ///< shape [beads]: as the atoms stand, and not by type
-    size_t frames;                     ///< that were written
+    const struct mapping *mapping;        ///< borrowed
+    const struct structure *structure;    ///< of its atoms, borrowed
+    size_t *order;                        ///< shape [beads]: as the atoms stand, and not by type
+    bool has_velocities;                  ///< of GSD, whose frames all have them or none
+    size_t frames;                        ///< that were written
+    const struct trajectory_frame *beads; ///< that are being written, borrowed
     struct output output;
 };
 
-/// Begin the file whose name's ending tells its format: .gro (nm, ps), .xyz and .extxyz, .lammpstrj
-/// and .dump (both in Å and fs). Beads stand by their molecules, in these by their first atoms.
-/// Fails: BAD_INPUT for another ending; IO, NO_MEMORY.
+/// Begin the file whose name's ending tells its format: .gro, .xtc, .gsd (nm, ps), .xyz and
+/// .extxyz, .lammpstrj and .dump (both in Å and fs). Beads stand by their molecules, in these by
+/// their first atoms. Fails: BAD_INPUT for another ending; IO, NO_MEMORY.
 enum status mf_beads_file_open(struct beads_file *file, const char *path,
                                const struct mapping *mapping,
                                const struct structure *structure) MUST_USE;

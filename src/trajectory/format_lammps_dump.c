@@ -75,8 +75,9 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     char units[32];
     TRY(mf_lammps_dump_read(&dump, first));
     if (dump.units) {
-        const struct word name = mf_words_columns(dump.units, 0, sizeof units);
-        if (!mf_words_copy(&name, units, sizeof units))
+        const char *rest = dump.units;
+        struct word name;
+        if (!mf_words_next(&rest, &name) || !mf_words_copy(&name, units, sizeof units))
             return mf_frame_fail_line(first, dump.units, "expected the units");
         TRY(mf_trajectory_found_units(trajectory, units));
     }

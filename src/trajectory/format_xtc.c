@@ -2,6 +2,7 @@
 //
 // GROMACS's compressed trajectories: XDR (RFC 4506), each frame with a header of its own. Since
 // 2023 a second magic number says that the bytes of the coordinates are counted with 64 bits.
+#include "io/xtc.h"
 #include "trajectory/binary.h"
 #include "trajectory/trajectory.h"
 #include "trajectory/xtc_coordinates.h"
@@ -10,11 +11,11 @@
 
 /// Magic number, atoms, step, time, box, atoms again; then, if packed: precision, least and most
 /// coordinates, level, and how many bytes follow.
-enum { MAGIC = 1995, MAGIC_LARGE = 2023, HEADER = 56, PACKING = 32, FEW_ATOMS = 9 };
+enum { MAGIC_LARGE = 2023, HEADER = 56, PACKING = 32 };
 
 static bool recognise(const unsigned char *begin, size_t size) {
     return size >= 4 &&
-           (binary_int(begin, true) == MAGIC || binary_int(begin, true) == MAGIC_LARGE);
+           (binary_int(begin, true) == XTC_MAGIC || binary_int(begin, true) == MAGIC_LARGE);
 }
 
 static enum status check_header(const struct trajectory *trajectory, const unsigned char *header) {
@@ -78,8 +79,8 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     TRY(mf_source_take(source, &frame->raw, HEADER));
     TRY(check_header(trajectory, frame->raw.data));
     const uint64_t atoms = binary_word(frame->raw.data + 4, true);
-    return atoms <= FEW_ATOMS ? mf_source_take(source, &frame->raw, 12 * atoms)
-                              : fetch_packed(source, &frame->raw);
+    return atoms <= XTC_FEW_ATOMS ? mf_source_take(source, &frame->raw, 12 * atoms)
+                                  : fetch_packed(source, &frame->raw);
 }
 
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
@@ -121,7 +122,7 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     for (int k = 0; k < 9; k++)
         box[k / 3][k % 3] = binary_float(header + 16 + 4 * k, true);
     mf_frame_set_box(frame, box);
-    return atoms <= FEW_ATOMS ? copy_few(frame, atoms) : unpack(frame);
+    return atoms <= XTC_FEW_ATOMS ? copy_few(frame, atoms) : unpack(frame);
 }
 
 static const char *const extensions[] = {"xtc", NULL};

@@ -92,6 +92,19 @@ static enum status read_columns(struct lammps_dump *dump, const struct trajector
     return STATUS_OK;
 }
 
+/// What our files have behind "ITEM: NUMBER OF ATOMS".
+static void read_notes(struct lammps_dump *dump, const char *words) {
+    struct word word;
+    while (mf_words_next(&words, &word)) {
+        const char *const units = after(word.begin, "units="), *const time =
+                                                                   after(word.begin, "time=");
+        if (units)
+            dump->units = units;
+        else if (time)
+            (void)read_number(time, &dump->time);
+    }
+}
+
 /// Take one item; `*line` becomes the last of its lines.
 static enum status read_item(struct lammps_dump *dump, const struct trajectory_frame *frame,
                              const char **line) {
@@ -105,6 +118,8 @@ static enum status read_item(struct lammps_dump *dump, const struct trajectory_f
         *line = mf_frame_next_line(frame, mf_frame_next_line(frame, value));
         return read_box(dump, frame, begin, words);
     }
+    if ((words = after(begin, "ITEM: NUMBER OF ATOMS")))
+        read_notes(dump, words);
     if (after(begin, "ITEM: UNITS"))
         dump->units = value;
     else if (after(begin, "ITEM: TIMESTEP") && !read_integer(value, &dump->step))

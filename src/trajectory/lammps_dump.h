@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file What stands before the atoms of a frame of a LAMMPS dump: manual, command `dump`.
+///
+/// LAMMPS writes units and time as items of their own, if asked to. MDAnalysis, which takes nine
+/// lines before the atoms, and old versions of OVITO do not read such files. Ours have both behind
+/// an item, where no program looks: "ITEM: NUMBER OF ATOMS time=500 units=real".
 #pragma once
 
 #include "base/status.h"
@@ -28,7 +32,7 @@ struct lammps_dump {
     size_t atoms, columns;
     int column[LAMMPS_COLUMNS]; ///< where each stands; −1: nowhere
     const char *first;          ///< line of the first atom
-    const char *units;          ///< line of their name; NULL: not said
+    const char *units;          ///< where their name stands; NULL: not said
     int64_t step;
     double time; ///< in the file's unit; NAN: not said
     double origin[3], box[3][3];

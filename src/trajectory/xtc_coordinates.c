@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/xtc_coordinates.h"
 
+#include "io/xtc.h"
 #include "trajectory/binary.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-enum { FIRST_LEVEL = 9, LEVELS = 73, MIN_BITS = 9 };
-
-/// Differences in level k are three digits below radix[k], 2^(k/3) but for a few that the format's
-/// author typed otherwise; k bits hold the three.
-static const int32_t radix_of_level[LEVELS] = {
-    0,        0,        0,       0,       0,       0,       0,       0,       0,       8,
-    10,       12,       16,      20,      25,      32,      40,      50,      64,      80,
-    101,      128,      161,     203,     256,     322,     406,     512,     645,     812,
-    1024,     1290,     1625,    2048,    2580,    3250,    4096,    5060,    6501,    8192,
-    10321,    13003,    16384,   20642,   26007,   32768,   41285,   52015,   65536,   82570,
-    104031,   131072,   165140,  208063,  262144,  330280,  416127,  524287,  660561,  832255,
-    1048576,  1321122,  1664510, 2097152, 2642245, 3329021, 4194304, 5284491, 6658042, 8388607,
-    10568983, 13316085, 16777216};
+enum { MIN_BITS = 9 };
 
 /// Three digits in one number of `bits` bits: (x radix[1] + y) radix[2] + z.
 struct digits {
@@ -134,7 +123,7 @@ static inline bool take_whole(const struct whole *whole, const unsigned char *da
 const char *mf_xtc_coordinates_check(const struct xtc_packing *packing, size_t bytes) {
     if (!(packing->precision > 0 && isfinite(packing->precision)))
         return "the precision of the coordinates is not positive";
-    if (packing->level < FIRST_LEVEL || packing->level >= LEVELS)
+    if (packing->level < XTC_FIRST_LEVEL || packing->level >= XTC_LEVELS)
         return "the size of the differences is not valid";
     for (int d = 0; d < 3; d++)
         if ((int64_t)packing->max[d] - packing->min[d] < 0 ||
@@ -177,9 +166,9 @@ static inline bool take_run(const struct digits *digits, const unsigned char *da
     return true;
 }
 
-static void make_levels(struct digits levels[LEVELS]) {
-    for (unsigned k = FIRST_LEVEL; k < LEVELS; k++) {
-        const uint64_t radix = (uint64_t)radix_of_level[k];
+static void make_levels(struct digits levels[XTC_LEVELS]) {
+    for (unsigned k = XTC_FIRST_LEVEL; k < XTC_LEVELS; k++) {
+        const uint64_t radix = (uint64_t)mf_xtc_radix[k];
         levels[k] = make_digits(radix, radix, radix);
         levels[k].bits = k;
     }
@@ -187,7 +176,7 @@ static void make_levels(struct digits levels[LEVELS]) {
 
 const char *mf_xtc_coordinates_unpack(const struct xtc_packing *packing, const unsigned char *data,
                                       size_t bytes, double (*position)[3], size_t *damage) {
-    struct digits levels[LEVELS];
+    struct digits levels[XTC_LEVELS];
     const struct whole whole = make_whole(packing);
     const double precision = packing->precision;
     size_t bit = 0, level = (size_t)packing->level;
@@ -214,7 +203,7 @@ const char *mf_xtc_coordinates_unpack(const struct xtc_packing *packing, const u
         atom += run + 1;
         level += change;
         level--;
-        if (level < FIRST_LEVEL || level >= LEVELS)
+        if (level < XTC_FIRST_LEVEL || level >= XTC_LEVELS)
             return "the packed coordinates are damaged";
     }
     *damage = bytes;

@@ -15,14 +15,19 @@
 
 #define SNAPSHOTS                                                                                  \
     "\"snapshots\": {\"every\": 40, \"formats\": [\"vtp\", \"json\", \"extxyz\", "                 \
-    "\"lammps-dump\", \"gsd\"]}, "
+    "\"lammps-dump\", \"gsd\", \"xtc\"]}, "
 static const char plan[] = "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}";
-static const char *const files[] = {
-    "snapshots/step_000001200.vtp",   "snapshots/step_000001200.json",
-    "snapshots/step_000001200.gsd",   "snapshots/step_000001240.vtp",
-    "snapshots/step_000001800.json",  "snapshots/step_000002400.json",
-    "snapshots/trajectory.extxyz",    "snapshots/step_000002400.vtp",
-    "snapshots/trajectory.lammpstrj", NULL};
+static const char *const files[] = {"snapshots/step_000001200.vtp",
+                                    "snapshots/step_000001200.json",
+                                    "snapshots/step_000001200.gsd",
+                                    "snapshots/step_000001240.vtp",
+                                    "snapshots/step_000001800.json",
+                                    "snapshots/step_000002400.json",
+                                    "snapshots/trajectory.extxyz",
+                                    "snapshots/step_000002400.vtp",
+                                    "snapshots/trajectory.lammpstrj",
+                                    "snapshots/trajectory.xtc",
+                                    NULL};
 
 static void test_interrupted_run_leaves_the_same_snapshots(void **state) {
     static struct run_program_result result;

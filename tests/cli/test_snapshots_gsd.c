@@ -19,7 +19,7 @@ static const char scene[] =
     "    \"bond\": \"spring\"}}},\n"
     "\"particles\": {\"types\": {\"W\": 10}, \"mass\": {\"A\": 2, \"B\": 1, \"W\": 3}},\n"
     "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
-    "\"snapshots\": {\"every\": 100, \"formats\": [\"lammps-dump\", \"gsd\"]},\n"
+    "\"snapshots\": {\"every\": 100, \"formats\": [\"lammps-dump\", \"gsd\", \"xtc\"]},\n"
     "\"measure\": {\"equilibration\": 200, \"samples\": 20, \"every\": 10}}\n";
 
 static void open_at(struct trajectory *trajectory, struct trajectory_frame *frame, const char *file,
@@ -45,6 +45,24 @@ static void compare(const struct trajectory_frame *gsd, const struct trajectory_
         }
 }
 
+/// XTC has positions in the box, in thousandths.
+static void compare_rounded(const struct trajectory_frame *dump) {
+    struct trajectory xtc;
+    struct trajectory_frame frame;
+    open_at(&xtc, &frame, "out/snapshots/trajectory.xtc", 3);
+    assert_true(frame.step == dump->step && frame.atoms == ATOMS);
+    assert_close(frame.time, 4, 1e-6);
+    for (int k = 0; k < ATOMS; k++)
+        for (int d = 0; d < 3; d++) {
+            const double apart = frame.position[k][d] - dump->position[k][d];
+            assert_close(frame.box[d][d], 4 + d, 1e-6);
+            assert_true(fabs(apart - (4 + d) * rint(apart / (4 + d))) < 0.000501);
+            assert_true(frame.position[k][d] >= 0 && frame.position[k][d] <= 4 + d);
+        }
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&xtc);
+}
+
 static void test_gsd_is_the_dump_with_bonds(void **state) {
     static struct run_program_result result;
     struct trajectory gsd, dump;
@@ -55,6 +73,7 @@ static void test_gsd_is_the_dump_with_bonds(void **state) {
     open_at(&gsd, &gsd_frame, "out/snapshots/step_000000400.gsd", 1);
     open_at(&dump, &dump_frame, "out/snapshots/trajectory.lammpstrj", 3);
     compare(&gsd_frame, &dump_frame);
+    compare_rounded(&dump_frame);
     int molecules = 0;
     for (int k = 0; k < ATOMS; k++) {
         const struct structure_atom *const atom = &gsd.structure.atom[k];
