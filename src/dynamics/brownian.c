@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/brownian.h"
 
-#include "base/normal_words.h"
 #include "base/parallel.h"
-#include "base/rng.h"
 #include "base/simd.h"
+#include "dynamics/particle_noise.h"
 #include "dynamics/simulation.h"
 #include "system/orientation.h"
 
@@ -17,7 +16,7 @@ struct state {
 
 /// Particles that are moved together, and numbers that one of them draws: for its axes and, in the
 /// place of the third, for its orientation.
-enum { BLOCK = NORMAL_WORDS, NUMBERS = 3 };
+enum { BLOCK = PARTICLE_NOISE_BLOCK, NUMBERS = PARTICLE_NOISE_NUMBERS };
 
 static const struct brownian_parameters *parameters_of(const struct simulation_setup *setup) {
     return setup->integrator_parameters;
@@ -38,26 +37,10 @@ static double free_turn(const struct simulation_setup *setup) {
 }
 
 /// Standard normal numbers of the particles begin … begin + count − 1 in this step.
-SIMD_CLONES static void draw(const struct simulation *simulation, size_t begin, size_t count,
-                             double noise[NUMBERS][BLOCK]) {
+static void draw(const struct simulation *simulation, size_t begin, size_t count,
+                 double noise[NUMBERS][BLOCK]) {
     const struct state *state = simulation->integrator_state;
-    const uint64_t step = simulation->step, seed = simulation->setup.seed;
-    const uint32_t *id = simulation->particles.id + begin;
-    const uint32_t low = (uint32_t)step, high = (uint32_t)(step >> 32);
-    uint32_t word[NUMBERS][BLOCK];
-    for (size_t k = 0; k < count; k++) {
-        uint32_t all[4];
-        rng_philox_words((uint32_t)seed, (uint32_t)(seed >> 32), low, id[k], high,
-                         rng_stream_word(RNG_BROWNIAN, 0), all);
-        for (int n = 0; n < NUMBERS; n++)
-            word[n][k] = all[n];
-    }
-    const size_t whole = (count + 3) / 4 * 4;
-    for (int n = 0; n < NUMBERS; n++) {
-        for (size_t k = count; k < whole; k++)
-            word[n][k] = 0;
-        normal_of_words(&state->normal, word[n], whole, noise[n]);
-    }
+    mf_particle_noise_draw(simulation, &state->normal, RNG_BROWNIAN, begin, count, noise);
 }
 
 /// Attributes of the particles that are moved.

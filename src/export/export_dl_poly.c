@@ -123,6 +123,7 @@ const struct export_engine mf_export_dl_poly = {
     .system = EXPORT_DL_POLY,
     .physical = true,
     .interpolation = &mf_export_grid_quadratic,
+    .bath = "ensemble nvt langevin",
     .commands = "    DLPOLY.Z\n    mpirun -np 4 DLPOLY.Z\n",
     .verified = "The tables of such folders were checked against the source of the engine; nothing "
                 "was run.",

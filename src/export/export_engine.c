@@ -158,52 +158,6 @@ static void print_friction(const struct export_job *job, FILE *stream) {
             EXPORT_POWER_BOUND);
 }
 
-/// What both simulations found, in the units of the engine.
-static void print_cost(const struct export_job *job, FILE *stream) {
-    const struct export_projection *p = &job->projection;
-    const struct export_units *units = &job->units;
-    const double diffusion = units->length * units->length / units->time;
-    const double window = p->interval * (EXPORT_TIMES - 1);
-    const struct export_measured *const both[] = {&p->result, &p->projected};
-    static const char *const names[] = {"omega of the result", "power law          "};
-    for (int k = 0; k < 2; k++)
-        fprintf(stream, "    %s: temperature %.6g +- %.2g %s, D %.4g +- %.2g %s^2/%s\n", names[k],
-                units->temperature * both[k]->temperature.value,
-                units->temperature * both[k]->temperature.error, units->temperature_name,
-                diffusion * both[k]->diffusion.value, diffusion * both[k]->diffusion.error,
-                units->length_name, units->time_name);
-    fprintf(stream,
-            "    E(t, r_0) to t = %.4g %s, r_0 < %.4g %s: rms of the difference %.2g; statistical "
-            "noise alone gives %.2g\n",
-            units->time * window, units->time_name, units->length * p->r_maximum,
-            units->length_name, p->rms, p->noise);
-}
-
-static void explain_projection(const struct export_job *job, FILE *stream) {
-    fprintf(stream,
-            "\nOmega is replaced by the power law here (--project). The effect, by two simulations "
-            "of mesofit\nof %lld steps each, with standard errors; projection.tsv has both E:\n\n",
-            (long long)job->projection.steps);
-    print_cost(job, stream);
-}
-
-/// Both E(t, r_0), a row for each time and bin.
-static void print_escapes(const struct export_job *job, FILE *stream) {
-    const struct export_projection *p = &job->projection;
-    const struct export_measured *a = &p->result, *b = &p->projected;
-    fprintf(stream,
-            "# t[%s]\tr_0[%s]\tresult[1]\tresult_error[1]\tprojected[1]\tprojected_error[1]\n",
-            job->units.time_name, job->units.length_name);
-    for (int k = 0; k < EXPORT_TIMES * EXPORT_BINS; k++) {
-        const int time = k / EXPORT_BINS, bin = k % EXPORT_BINS;
-        if (isfinite(a->survival[k] + b->survival[k]))
-            fprintf(stream, "%.6g\t%.6g\t%.6g\t%.2g\t%.6g\t%.2g\n",
-                    time * p->interval * job->units.time,
-                    (bin + 0.5) / EXPORT_BINS * p->r_maximum * job->units.length, a->survival[k],
-                    a->error[k], b->survival[k], b->error[k]);
-    }
-}
-
 static void print_number(FILE *stream, const char *name, const struct export_number *number,
                          double factor, const char *unit) {
     if (!isfinite(number->value))
@@ -222,6 +176,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
         stream, "%s, for %s\n\nWritten by mesofit " MESOFIT_VERSION " from %s. Run it here:\n\n",
         model->title[0] ? model->title : "A result of mesofit", job->engine->title, model->folder);
     fprintf(stream, "%s\n", job->engine->commands);
+    mf_export_dynamics_print(job, "", stream);
+    fprintf(stream, "\n");
     fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g %s.\n\n",
             units->length_name, units->time_name, units->energy_name, units->temperature_name,
             units->pressure_name, units->time * job->time_step, units->time_name,
@@ -253,26 +209,12 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     fprintf(stream, "\n");
     print_friction(job, stream);
     if (job->projected)
-        explain_projection(job, stream);
+        mf_export_dynamics_explain(job, stream);
     fprintf(stream, "\n");
     job->engine->explain(job, stream);
     fprintf(stream, "%s\n\nThe start is %s.\n", job->engine->verified,
             model->equilibrated ? "where the result's own simulation ended"
                                 : "that of the scene, which must be equilibrated first");
-}
-
-/// Lines of a text, one at a time.
-static void print_cost_lines(const struct export_job *job, struct progress *to) {
-    char *text = NULL;
-    size_t size;
-    FILE *stream = open_memstream(&text, &size);
-    if (stream == NULL)
-        return;
-    print_cost(job, stream);
-    fclose(stream);
-    for (char *rest, *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
-        mf_progress_print(to, "%s", line);
-    free(text);
 }
 
 static void print_result(const struct export_job *job, struct progress *to) {
@@ -286,19 +228,14 @@ static void print_result(const struct export_job *job, struct progress *to) {
                       job->units.length * error->from, job->units.length_name);
     if (job->model->remembers)
         mf_progress_print(to, "mesofit: warning: %.160s: %s", job->model->folder, left_out);
-    if (job->projected) {
-        mf_progress_print(to, "omega is replaced by a power law: misfit %.2g", job->worst_misfit);
-        print_cost_lines(job, to);
-    } else if (job->model->setup.omega)
-        mf_progress_print(to, "omega is %sa power law: misfit %.2g",
-                          mf_export_is_power(job) ? "" : "not ", job->worst_misfit);
+    mf_export_dynamics_tell(job, to);
     mf_progress_print(to, "%s: see README", job->folder);
 }
 
 static enum status write_files(struct export_job *job) {
     TRY(mf_export_file(job, "README", print_readme));
     if (job->projected)
-        TRY(mf_export_file(job, "projection.tsv", print_escapes));
+        TRY(mf_export_file(job, "projection.tsv", mf_export_dynamics_escapes));
     return job->engine->write(job);
 }
 
@@ -345,9 +282,7 @@ static enum status run(struct export_job *job, const struct export_request *requ
         CHECK(job->engine->check(job));
     CHECK(open_folder(&own, job, request->force));
     find_powers(job);
-    if (job->projected)
-        CHECK(mf_export_project(model, job->power, request->threads, request->listener,
-                                &job->projection));
+    CHECK(mf_export_dynamics_find(job, request));
     CHECK(write_folder(job, &own));
     print_result(job, request->progress);
 done:

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "export/export_bonded.h"
+#include "export/export_dynamics.h"
 #include "export/export_grid.h"
 #include "export/export_power.h"
 #include "export/export_projection.h"
@@ -25,8 +26,12 @@ struct export_job {
     struct export_grids grids;
     struct export_power power[COMPOSITION_MAX_PAIRS]; ///< of ω, if there is one
     double worst_misfit;                              ///< of all of them
-    bool projected;                                   ///< the power laws stand for ω, and
-    struct export_projection projection;              ///< what that costs
+    bool projected;                                   ///< the power laws stand for ω
+    enum export_motion runs;                          ///< what the engine does of its own
+    enum export_here here;                            ///< whether this machine's has the friction
+    bool measured;                                    ///< what stands for ω was simulated:
+    struct export_projection projection;              ///< what it costs,
+    char unmeasured[256];                             ///< or why it was not; ""
     double time_step;                                 ///< for this engine [τ]
     struct export_bonded bonded;                      ///< tables of laws that it has not
     int exclude; ///< of all molecules, for engines that have one number for all
@@ -48,6 +53,13 @@ struct export_engine {
     /// Whether it has a law as it is, so that no table is wanted; with `molecules`.
     bool (*has_law)(const struct bonded_curve *curve);
     enum export_friction friction;
+    const char *friction_name; ///< what it calls that, but for EXPORT_POWER; NULL: none
+    const char *bath; ///< what it calls its Langevin bath; NULL: nothing that moves is written
+    /// Whether the program on this machine has the style of the friction, which it runs of its own
+    /// only then. NULL: not asked.
+    enum export_here (*ask)(const struct export_job *job);
+    /// Lines of the block: how the friction can be had. NULL: none.
+    void (*advise)(const struct export_job *job, const char *prefix, FILE *stream);
     const char *commands; ///< that run the folder, a line each
     const char *verified; ///< whether such folders were run: a sentence of the README
     int max_types;        ///< that it is written for

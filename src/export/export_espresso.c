@@ -50,6 +50,8 @@ const struct export_engine mf_export_espresso = {
     .system = EXPORT_NANOMETRES,
     .interpolation = &mf_export_grid_linear,
     .friction = EXPORT_LINEAR,
+    .friction_name = "dpd with weight_function 1",
+    .bath = "thermostat.set_langevin",
     .commands = "    pypresso run.py\n    pypresso run.py 100000   # steps\n",
     .verified = "The tables of such folders were checked against the source of the engine; nothing "
                 "was run.",

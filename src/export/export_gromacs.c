@@ -81,6 +81,7 @@ static void print_topology(const struct export_job *job, FILE *stream) {
 static void print_settings(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const double cutoff = model->setup.potential->cutoff * job->units.length;
+    mf_export_dynamics_print(job, "; ", stream);
     fprintf(stream,
             "integrator = sd\ndt = %.9g\nnsteps = 10000\nnstxout-compressed = 100\nnstenergy = "
             "20\ncutoff-scheme = group\nnstlist = 5\nrlist = %.9g\ncoulombtype = Cut-off\nrcoulomb "
@@ -133,6 +134,7 @@ const struct export_engine mf_export_gromacs = {
     .system = EXPORT_NANOMETRES,
     .physical = true,
     .interpolation = &mf_export_grid_hermite,
+    .bath = "integrator sd",
     .commands = "    gmx grompp\n    gmx mdrun\n",
     .verified = "Such folders were checked against the manual of GROMACS, and not run.",
     .max_types = COMPOSITION_MAX_TYPES,

@@ -64,6 +64,8 @@ const struct export_engine mf_export_hoomd = {
     .system = EXPORT_NANOMETRES,
     .interpolation = &mf_export_grid_open,
     .friction = EXPORT_LINEAR,
+    .friction_name = "hoomd.md.pair.DPD",
+    .bath = "methods.Langevin",
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
     .verified = "The tables of such folders were checked against the source of the engine; nothing "
                 "was run.",

@@ -3,8 +3,12 @@
 // LAMMPS: pair_style table linear reads the rows as they are if its N is that of the file and the
 // rows are RSQ. Friction by dpd/tstat and dpd/ext/tstat, or by mesofit/table (share/lammps).
 #include "export/export_lammps_molecules.h"
+#include "report/program.h"
 
+#include <ctype.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 /// Skin of the neighbour list [λ]: a tenth of the cutoff, and so much that the fastest particle, of
 /// eight times the thermal velocity, crosses half of it in no step.
@@ -15,6 +19,10 @@ static double choose_skin(const struct export_job *job) {
         lightest = fmin(lightest, model->mass[type]);
     return fmax(0.1 * mf_export_model_cutoff(model),
                 16 * job->time_step * sqrt(model->setup.temperature / lightest));
+}
+
+static bool dpd_runs(const struct export_job *job) {
+    return job->runs == EXPORT_OWN_FRICTION || job->runs == EXPORT_PROJECTED;
 }
 
 static bool is_real(const struct export_job *job) {
@@ -257,7 +265,9 @@ static void print_input(const struct export_job *job, FILE *stream) {
             "friction index %s # or another one named in README\nvariable band index \"\"          "
             "# _lower or _upper: exported with --bands\nvariable seed index 12345\n\n",
             model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000,
-            job->projected ? "dpd" : "langevin");
+            dpd_runs(job) ? "dpd" : "langevin");
+    mf_export_dynamics_print(job, "# ", stream);
+    fprintf(stream, "\n");
     if (job->folder[strcspn(job->folder, unquotable)] == '\0')
         fprintf(stream,
                 "# in this folder, or where it was written from\n"
@@ -281,6 +291,42 @@ static enum status write(const struct export_job *job) {
     return mf_export_file(job, "in.mesofit", print_input);
 }
 
+/// `lmp -h` lists its styles, each with spaces about it.
+static bool lists_style(const char *text, const char *style) {
+    const size_t length = strlen(style);
+    for (const char *at = strstr(text, style); at; at = strstr(at + 1, style))
+        if (at > text && isspace((unsigned char)at[-1]) &&
+            (at[length] == '\0' || isspace((unsigned char)at[length])))
+            return true;
+    return false;
+}
+
+static enum export_here ask(const struct export_job *job) {
+    enum { SIZE = 1 << 18, SECONDS = 20 };
+    static const char *const words[] = {"lmp", "-h", NULL};
+    enum export_here here = EXPORT_NO_PROGRAM;
+    char *text = malloc(SIZE);
+    if (text && mf_program_run(".", words, PROGRAM_EVERYTHING, SECONDS, text, SIZE) == STATUS_OK)
+        here = lists_style(text, mf_export_dynamics_friction(job)) ? EXPORT_HERE : EXPORT_NOT_HERE;
+    free(text);
+    return here;
+}
+
+/// How the friction can be had, and whether this machine's LAMMPS has it.
+static void advise(const struct export_job *job, const char *prefix, FILE *stream) {
+    static const char *const here[] = {
+        [EXPORT_HERE] = "the lmp of this machine has it",
+        [EXPORT_NOT_HERE] = "the lmp of this machine lacks it, as Debian's does",
+        [EXPORT_NO_PROGRAM] = "no lmp was found here; Debian's lacks it"};
+    if (mf_export_is_power(job))
+        fprintf(stream, "%spackage    -var friction dpd is %s, of LAMMPS's package DPD-BASIC: %s\n",
+                prefix, mf_export_dynamics_friction(job), here[job->here]);
+    if (job->runs != EXPORT_OWN_FRICTION)
+        fprintf(stream,
+                "%sexact      -var friction exact runs omega as it is, by mesofit's share/lammps\n",
+                prefix);
+}
+
 static void explain(const struct export_job *job, FILE *stream) {
     fprintf(stream,
             "in.mesofit leaves LAMMPS's own g(r) in rdf.dat (bins of the result; of mixtures a "
@@ -290,13 +336,12 @@ static void explain(const struct export_job *job, FILE *stream) {
             "-var friction langevin%s runs in every LAMMPS: a bath for each particle. It keeps "
             "g(r), energy\nand pressure; the dynamics is not the result's: diffusion and all else "
             "that moves differs.\n",
-            job->projected ? "" : ", the default,");
+            dpd_runs(job) ? "" : ", the default,");
     if (mf_export_is_power(job))
         fprintf(stream,
                 "-var friction dpd%s: %s by pair_style hybrid/overlay, the power law above. LAMMPS "
                 "needs its package DPD-BASIC.\n",
-                job->projected ? ", the default" : "",
-                mf_export_is_linear(job) ? "dpd/tstat" : "dpd/ext/tstat");
+                dpd_runs(job) ? ", the default" : "", mf_export_dynamics_friction(job));
     else if (job->model->setup.omega)
         fprintf(stream, "LAMMPS's own dpd/tstat and dpd/ext/tstat cannot express this omega.\n");
     if (job->model->setup.omega)
@@ -311,6 +356,9 @@ const struct export_engine mf_export_lammps = {
     .system = EXPORT_REAL,
     .interpolation = &mf_export_grid_square,
     .friction = EXPORT_POWER,
+    .bath = "fix langevin",
+    .ask = ask,
+    .advise = advise,
     .commands = "    lmp -in in.mesofit\n    mpirun -np 4 lmp -in in.mesofit   # the same on four "
                 "processors\n",
     .verified = "Such folders were run with LAMMPS of 29 Sep 2021 and 6 Jan 2022.",

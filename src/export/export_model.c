@@ -121,7 +121,15 @@ static const struct field summary_fields[] = {
     NUMBER("temperature_configurational", configurational, "T_0"),
     NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
     NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
+    NUMBER("diffusion", diffusion.value, "lambda^2/tau"),
+    NUMBER("diffusion_error", diffusion.error, "lambda^2/tau"),
     NUMBER("verification_time_step", verified_step, "tau"),
+    FIELD_END,
+};
+/// Of a simulation, in its object "motion".
+static const struct field motion_fields[] = {
+    NUMBER("diffusion_msd", diffusion.value, "lambda^2/tau"),
+    NUMBER("diffusion_msd_error", diffusion.error, "lambda^2/tau"),
     FIELD_END,
 };
 
@@ -157,6 +165,10 @@ static enum status read_summary(struct reading *reading) {
                  "%.160s: the fit is %.40s; what is exported is its best so far", model->folder,
                  status);
     mf_json_fields(&root, summary_fields, model);
+    if (mf_json_is_object(&root, "motion")) {
+        struct json_object motion = mf_json_child(&root, "motion", true);
+        mf_json_fields(&motion, motion_fields, model);
+    }
     if (model->verified_step > 0) // what the verification chose, if that was left to it
         model->setup.time_step = model->verified_step;
     read_numbers(reading, &root);

@@ -38,6 +38,7 @@ struct export_model {
     size_t rdf_bins;   ///< of g(r), equally wide from 0 on
     double rdf_range;  ///< where they end [λ]
     struct export_number temperature, pressure; ///< of the result
+    struct export_number diffusion;             ///< D of it, if it was measured
     double configurational;                     ///< its configurational temperature; or NAN
     double verified_step;                       ///< time step of the verification; or NAN [τ]
     char warning[256]; ///< what a person should know of the result; "" if nothing

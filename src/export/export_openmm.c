@@ -69,6 +69,8 @@ const struct export_engine mf_export_openmm = {
     .physical = true,
     .interpolation = &mf_export_grid_spline,
     .friction = EXPORT_LINEAR_OF_ONE_TYPE,
+    .friction_name = "DPDIntegrator, from version 8.3 on (an older one runs a bath)",
+    .bath = "LangevinMiddleIntegrator",
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
     .verified =
         "Such folders were run with OpenMM 7.7 and its Langevin bath; DPDIntegrator is as in its "

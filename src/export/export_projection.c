@@ -2,6 +2,7 @@
 #include "export/export_projection.h"
 
 #include "curves/formula.h"
+#include "dynamics/langevin.h"
 #include "observe/etd.h"
 #include "observe/motion.h"
 #include "observe/thermodynamics.h"
@@ -45,14 +46,20 @@ static double find_spacing(const struct export_model *model) {
     return pow(mf_box_volume(box) / (double)model->count, 1.0 / box->dimensions);
 }
 
-static struct plan make_plan(const struct export_model *model) {
+/// Windows of a simulation: at least, at most, and particles × steps that more than the least may
+/// take.
+struct effort {
+    double least, most, cheap;
+};
+static const struct effort whole_effort = {20, 200, 1e7}, passing_effort = {10, 60, 3e6};
+
+static struct plan make_plan(const struct export_model *model, const struct effort *effort) {
     enum { LAGS = 2 * (EXPORT_TIMES - 1), WINDOWS_BEFORE = 3 };
-    static const double cheap = 1e7; // particles × steps
     const struct simulation_setup *setup = &model->setup;
     const double spacing = find_spacing(model), widest = 1.6 * spacing;
     const double window = 3 * spacing * sqrt(model->mass[0] / setup->temperature);
     const int64_t every = (int64_t)fmax(1, round(window / LAGS / setup->time_step));
-    const double windows = cheap / (LAGS * (double)every * (double)model->count);
+    const double windows = effort->cheap / (LAGS * (double)every * (double)model->count);
     double reach = widest;
     for (int d = 0; d < setup->box.dimensions; d++)
         reach = fmin(reach, 0.499 * setup->box.length[d]);
@@ -61,7 +68,7 @@ static struct plan make_plan(const struct export_model *model) {
                 {.every = 2 * every, .origin_every = 5}},
         .motion = {.every = every, .lags = LAGS, .origin_every = 5},
         .measure = {.equilibration = WINDOWS_BEFORE * LAGS * every,
-                    .samples = LAGS / 2 * (int64_t)fmin(fmax(20, windows), 200),
+                    .samples = LAGS / 2 * (int64_t)fmin(fmax(effort->least, windows), effort->most),
                     .every = 2 * every},
     };
 }
@@ -94,13 +101,18 @@ static enum status read_results(const struct run *run, struct export_measured *m
                          measured->pairs);
 }
 
-/// A simulation from the model's start; `seed` tells one from another.
+/// A simulation from the model's start with ω, or with a bath; `seed` tells one from another.
 static enum status simulate(const struct export_model *model, const struct table *omega,
-                            uint64_t seed, struct plan *plan, struct export_measured *measured) {
+                            const struct langevin_parameters *bath, uint64_t seed,
+                            struct plan *plan, struct export_measured *measured) {
     CLEARED_BY(clear) struct run run = {0};
     struct simulation_setup setup = model->setup;
     struct simulation_start start = {0};
     setup.omega = omega;
+    if (bath) {
+        setup.integrator = &mf_langevin;
+        setup.integrator_parameters = bath;
+    }
     setup.seed = seed;
     setup.threads = plan->threads;
     setup.placement.kind = PLACEMENT_FILE;
@@ -146,11 +158,29 @@ static void compare(struct export_projection *projection) {
     projection->noise = weights > 0 ? sqrt(errors / weights) : NAN;
 }
 
-enum status mf_export_project(const struct export_model *model, const struct export_power *power,
+static enum status check_size(const struct export_model *model, const struct plan *plan) {
+    const double steps =
+        (double)(plan->measure.equilibration + plan->measure.samples * plan->measure.every);
+    return (double)model->count * steps <= EXPORT_IN_PASSING
+               ? STATUS_OK
+               : mf_status_fail(STATUS_BAD_INPUT,
+                                "%zu beads for %.3g steps take more than a minute", model->count,
+                                steps);
+}
+
+static void know_nothing(struct export_measured *measured) {
+    *measured = (struct export_measured){.temperature = {NAN, NAN}, .diffusion = {NAN, NAN}};
+    for (int k = 0; k < EXPORT_TIMES * EXPORT_BINS; k++)
+        measured->survival[k] = measured->error[k] = NAN;
+}
+
+enum status mf_export_project(const struct export_model *model,
+                              const struct export_substitute *substitute, bool in_passing,
                               int threads, const struct measure_listener *listener,
                               struct export_projection *projection) {
     const uint64_t seed = model->setup.seed;
-    struct plan plan = make_plan(model);
+    const struct langevin_parameters bath = {substitute->rate};
+    struct plan plan = make_plan(model, in_passing ? &passing_effort : &whole_effort);
     struct halves halves = {.listener = listener};
     CLEARED_BY(mf_table_clear) struct table omega = {0};
     *projection =
@@ -159,10 +189,16 @@ enum status mf_export_project(const struct export_model *model, const struct exp
                                    .steps = plan.measure.samples * plan.measure.every};
     plan.threads = threads;
     plan.half = (struct measure_listener){.report = report_half, .context = &halves};
-    TRY(tabulate(power, mf_export_model_pairs(model), &omega));
-    TRY(simulate(model, model->setup.omega, seed + 1, &plan, &projection->result));
+    know_nothing(&projection->result);
+    if (in_passing)
+        TRY(check_size(model, &plan));
+    if (substitute->power)
+        TRY(tabulate(substitute->power, mf_export_model_pairs(model), &omega));
+    if (!model->remembers)
+        TRY(simulate(model, model->setup.omega, NULL, seed + 1, &plan, &projection->result));
     halves.done = 1;
-    TRY(simulate(model, &omega, seed + 2, &plan, &projection->projected));
+    TRY(simulate(model, substitute->power ? &omega : NULL, substitute->power ? NULL : &bath,
+                 seed + 2, &plan, &projection->projected));
     compare(projection);
     return STATUS_OK;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What it costs to replace a friction weight ω by the power law that another engine has,
-/// measured by two simulations: that of the result and one with the power law.
+/// @file What it costs to replace a friction weight ω by what another engine has, a power law or a
+/// bath of each bead, measured by two simulations: that of the result and one with the other.
 #pragma once
 
 #include "export/export_power.h"
@@ -26,14 +26,25 @@ struct export_projection {
     double noise;  ///< what it would be on average if the two frictions were the same
 };
 
-/// Simulate a model from its start with its own ω and with the power laws of its pairs: twenty
-/// windows, of a small model up to two hundred, after three for equilibration, each of 3 ρ^(−1/d)
-/// sqrt(μ/k_B T), in which pairs of neighbours part. The noise is the sqrt of the likewise weighted
-/// mean of both squared standard errors.
-/// @param[in] power     shape [pairs]
+/// What stands for the friction of the result.
+struct export_substitute {
+    const struct export_power *power; ///< shape [pairs]; NULL: a bath of each bead
+    double rate;                      ///< γ/m of the bath [1/τ]
+};
+
+/// Particles times steps that a simulation takes in passing, a minute of one core at most.
+#define EXPORT_IN_PASSING 3e8
+
+/// Simulate a model from its start with its own friction and with what stands for it, for windows
+/// of 3 ρ^(−1/d) sqrt(μ/k_B T), in which pairs of neighbours part: twenty, of a small model up to
+/// two hundred, after three for equilibration; in passing ten and sixty. The noise is the sqrt of
+/// the likewise weighted mean of both squared standard errors. Friction that was left out as no
+/// engine has it is not there to be simulated: then numbers of the result are NaN.
 /// @param[in] listener  gets both simulations as one; NULL: none
-/// Fails: as mf_simulation_run; BAD_INPUT for a box too small for E; NO_MEMORY. Same bits for any
-/// number of threads. Tested: cli/test_export_fits.
-enum status mf_export_project(const struct export_model *model, const struct export_power *power,
+/// Fails: as mf_simulation_run; BAD_INPUT for a box too small for E, and in passing for a model
+/// that takes more than EXPORT_IN_PASSING; NO_MEMORY. Same bits for any number of threads. Tested:
+/// cli/test_export_fits.
+enum status mf_export_project(const struct export_model *model,
+                              const struct export_substitute *substitute, bool in_passing,
                               int threads, const struct measure_listener *listener,
                               struct export_projection *projection) MUST_USE;

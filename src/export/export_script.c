@@ -85,6 +85,7 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
     const double *length = model->setup.box.length;
     fprintf(stream, "# Written by mesofit; see README. Units: %s, %s, %s.\n", units->length_name,
             units->time_name, units->energy_name);
+    mf_export_dynamics_print(job, "# ", stream);
     fprintf(stream,
             "import os\nimport sys\nimport numpy\nimport %s\n\n"
             "os.chdir(os.path.dirname(os.path.abspath(__file__)))\n",

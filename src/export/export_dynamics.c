@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/export_dynamics.h"
+
+#include "export/export_engine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// What runs ---------------------------------------------------------------------------------------
+
+const char *mf_export_dynamics_friction(const struct export_job *job) {
+    return job->engine->friction != EXPORT_POWER ? job->engine->friction_name
+           : mf_export_is_linear(job)            ? "dpd/tstat"
+                                                 : "dpd/ext/tstat";
+}
+
+/// Whether the engine can express the friction at all.
+static bool can_express(const struct export_job *job) {
+    switch (job->engine->friction) {
+    case EXPORT_NO_FRICTION:
+        return false;
+    case EXPORT_LINEAR_OF_ONE_TYPE:
+        return mf_export_is_linear(job) && job->model->types == 1;
+    case EXPORT_LINEAR:
+        return mf_export_is_linear(job);
+    case EXPORT_POWER:
+        return mf_export_is_power(job);
+    }
+    return false;
+}
+
+/// What was asked for by --project runs of its own; else what is sure to run here does.
+static enum export_motion choose(const struct export_job *job) {
+    if (job->engine->bath == NULL)
+        return EXPORT_TABLES_ALONE;
+    if (!can_express(job))
+        return EXPORT_BATH;
+    if (job->projected)
+        return EXPORT_PROJECTED;
+    return job->engine->ask && job->here != EXPORT_HERE ? EXPORT_BATH : EXPORT_OWN_FRICTION;
+}
+
+static enum status measure(struct export_job *job, const struct export_request *request) {
+    const struct export_substitute substitute = {job->runs == EXPORT_PROJECTED ? job->power : NULL,
+                                                 1 / mf_export_slowing(job)};
+    const enum status status =
+        mf_export_project(job->model, &substitute, job->runs != EXPORT_PROJECTED, request->threads,
+                          request->listener, &job->projection);
+    if (job->runs == EXPORT_PROJECTED || status == STATUS_OK || status == STATUS_INTERRUPTED ||
+        status == STATUS_NO_MEMORY) {
+        job->measured = status == STATUS_OK;
+        return status;
+    }
+    snprintf(job->unmeasured, sizeof job->unmeasured, "%s", mf_status_message());
+    return STATUS_OK;
+}
+
+enum status mf_export_dynamics_find(struct export_job *job, const struct export_request *request) {
+    job->here = can_express(job) && job->engine->ask ? job->engine->ask(job) : EXPORT_NOT_ASKED;
+    job->runs = choose(job);
+    return job->runs == EXPORT_PROJECTED || job->runs == EXPORT_BATH ? measure(job, request)
+                                                                     : STATUS_OK;
+}
+
+// The block ---------------------------------------------------------------------------------------
+
+static void print_friction(const struct export_job *job, const char *prefix, FILE *stream) {
+    const bool lost = job->model->setup.omega || job->model->remembers;
+    fprintf(stream, "%sfriction   ", prefix);
+    if (job->runs == EXPORT_TABLES_ALONE)
+        fprintf(stream, "none: the tables are of the potential alone%s\n",
+                lost ? "; the friction of the result is lost" : "");
+    else if (job->runs == EXPORT_OWN_FRICTION)
+        fprintf(stream, "that of the result: %s, with a misfit of %.2g\n",
+                mf_export_dynamics_friction(job), job->worst_misfit);
+    else if (job->runs == EXPORT_PROJECTED)
+        fprintf(stream, "the nearest that %s has: %s, with a misfit of %.2g\n", job->engine->title,
+                mf_export_dynamics_friction(job), job->worst_misfit);
+    else
+        fprintf(stream, "%s: a Langevin bath of each bead, %s, m/gamma = %.4g %s%s\n",
+                lost ? "NOT that of the result" : "the result has none", job->engine->bath,
+                mf_export_slowing(job) * job->units.time, job->units.time_name,
+                lost ? "; lost are omega(r), conserved momentum and flow" : "");
+}
+
+static void print_number(FILE *stream, const struct export_number *number, double factor) {
+    fprintf(stream, "%.4g", factor * number->value);
+    if (isfinite(number->error))
+        fprintf(stream, " +- %.2g", factor * number->error);
+}
+
+/// How much faster or slower, if the errors show it.
+static void print_change(FILE *stream, const struct export_number *here,
+                         const struct export_number *there) {
+    const double change = there->value / here->value - 1;
+    const double error = fabs(there->value / here->value) *
+                         hypot(here->error / here->value, there->error / there->value);
+    if (fabs(change) <= 2 * error || isnan(error))
+        fprintf(stream, ", alike within the errors");
+    else
+        fprintf(stream, ", %.0f(%.0f) %% %s", 100 * fabs(change), fmax(1, 100 * error),
+                change > 0 ? "higher" : "lower");
+}
+
+static void print_measured(const struct export_job *job, const char *prefix, FILE *stream) {
+    const struct export_projection *p = &job->projection;
+    const struct export_units *units = &job->units;
+    const struct export_number *own = &p->result.diffusion, *there = &p->projected.diffusion;
+    const double diffusion = units->length * units->length / units->time;
+    const bool both = isfinite(own->value);
+    fprintf(stream, "%sD          ", prefix);
+    if (both)
+        print_number(stream, own, diffusion);
+    fprintf(stream, both ? " %s^2/%s of the result, " : "", units->length_name, units->time_name);
+    print_number(stream, there, diffusion);
+    fprintf(stream, " %s^2/%s there", units->length_name, units->time_name);
+    if (both)
+        print_change(stream, own, there);
+    const double window = units->time * p->interval * (EXPORT_TIMES - 1);
+    fprintf(stream,
+            " (slope of the MSD from %.3g to %.3g %s, simulated by mesofit for %.3g %s%s)\n",
+            window / 2, window, units->time_name,
+            units->time * (double)p->steps * job->model->setup.time_step, units->time_name,
+            both ? " each" : "");
+    if (isfinite(p->rms))
+        fprintf(stream,
+                "%sE(t, r_0)  to t = %.4g %s: rms of the difference %.2g; statistical noise alone "
+                "gives %.2g\n",
+                prefix, window, units->time_name, p->rms, p->noise);
+}
+
+/// What would carry the friction, if it is not carried.
+static void print_instead(const struct export_job *job, const char *prefix, FILE *stream) {
+    const bool wanted = job->model->setup.omega && job->runs != EXPORT_OWN_FRICTION;
+    if (job->engine->advise && job->model->setup.omega)
+        job->engine->advise(job, prefix, stream);
+    if (!wanted || job->projected || can_express(job))
+        return;
+    if (job->engine->friction == EXPORT_NO_FRICTION)
+        fprintf(
+            stream,
+            "%sinstead    LAMMPS, HOOMD-blue, ESPResSo and OpenMM have friction between pairs\n",
+            prefix);
+    else
+        fprintf(stream,
+                "%sinstead    mesofit fit --friction %s finds an omega that %s has; export "
+                "--project writes the nearest to this one\n",
+                prefix, job->engine->friction == EXPORT_POWER ? "exportable" : "linear",
+                job->engine->title);
+}
+
+void mf_export_dynamics_print(const struct export_job *job, const char *prefix, FILE *stream) {
+    const struct export_units *units = &job->units;
+    const double diffusion = units->length * units->length / units->time;
+    fprintf(stream, "%sWhat of the dynamics goes to %s:\n", prefix, job->engine->title);
+    fprintf(stream,
+            "%sstructure  phi as tables: g(r), energy and pressure are those of the result\n",
+            prefix);
+    print_friction(job, prefix, stream);
+    if (job->measured)
+        print_measured(job, prefix, stream);
+    else if (job->unmeasured[0])
+        fprintf(stream, "%sD          not measured of what runs there: %s\n", prefix,
+                job->unmeasured);
+    if (isfinite(job->model->diffusion.value)) {
+        fprintf(stream, "%ssummary    D ", prefix);
+        print_number(stream, &job->model->diffusion, diffusion);
+        fprintf(stream, " %s^2/%s of the result in its summary.json\n", units->length_name,
+                units->time_name);
+    }
+    print_instead(job, prefix, stream);
+}
+
+/// Lines of a text, one at a time.
+static void print_lines(char *text, struct progress *to) {
+    for (char *rest, *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
+        mf_progress_print(to, "%s", line);
+}
+
+void mf_export_dynamics_tell(const struct export_job *job, struct progress *progress) {
+    char *text = NULL;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    if (stream == NULL)
+        return;
+    mf_export_dynamics_print(job, "  ", stream);
+    fclose(stream);
+    print_lines(text, progress);
+    free(text);
+}
+
+// A projection ------------------------------------------------------------------------------------
+
+/// What both simulations found, in the units of the engine.
+static void print_cost(const struct export_job *job, FILE *stream) {
+    const struct export_projection *p = &job->projection;
+    const struct export_units *units = &job->units;
+    const double diffusion = units->length * units->length / units->time;
+    const struct export_measured *const both[] = {&p->result, &p->projected};
+    static const char *const names[] = {"omega of the result", "power law          "};
+    for (int k = 0; k < 2; k++)
+        fprintf(stream, "    %s: temperature %.6g +- %.2g %s, D %.4g +- %.2g %s^2/%s\n", names[k],
+                units->temperature * both[k]->temperature.value,
+                units->temperature * both[k]->temperature.error, units->temperature_name,
+                diffusion * both[k]->diffusion.value, diffusion * both[k]->diffusion.error,
+                units->length_name, units->time_name);
+    fprintf(stream,
+            "    E(t, r_0) to t = %.4g %s, r_0 < %.4g %s: rms of the difference %.2g; statistical "
+            "noise alone gives %.2g\n",
+            units->time * p->interval * (EXPORT_TIMES - 1), units->time_name,
+            units->length * p->r_maximum, units->length_name, p->rms, p->noise);
+}
+
+void mf_export_dynamics_explain(const struct export_job *job, FILE *stream) {
+    fprintf(stream,
+            "\nOmega is replaced by the power law here (--project). The effect, by two simulations "
+            "of mesofit\nof %lld steps each, with standard errors; projection.tsv has both E:\n\n",
+            (long long)job->projection.steps);
+    print_cost(job, stream);
+}
+
+void mf_export_dynamics_escapes(const struct export_job *job, FILE *stream) {
+    const struct export_projection *p = &job->projection;
+    const struct export_measured *a = &p->result, *b = &p->projected;
+    fprintf(stream,
+            "# t[%s]\tr_0[%s]\tresult[1]\tresult_error[1]\tprojected[1]\tprojected_error[1]\n",
+            job->units.time_name, job->units.length_name);
+    for (int k = 0; k < EXPORT_TIMES * EXPORT_BINS; k++) {
+        const int time = k / EXPORT_BINS, bin = k % EXPORT_BINS;
+        if (isfinite(a->survival[k] + b->survival[k]))
+            fprintf(stream, "%.6g\t%.6g\t%.6g\t%.2g\t%.6g\t%.2g\n",
+                    time * p->interval * job->units.time,
+                    (bin + 0.5) / EXPORT_BINS * p->r_maximum * job->units.length, a->survival[k],
+                    a->error[k], b->survival[k], b->error[k]);
+    }
+}
