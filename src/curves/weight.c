@@ -64,7 +64,7 @@ static const struct field fields[] = {CUTOFF, FIELD_END};
 
 const struct curve_family mf_weight_sanyal_shell = {
     .name = "sanyal-shell",
-    .summary = "neighbours: 1 - 3x^2 + 2x^3, x = (r^2 - r_0^2)/(r_c^2 - r_0^2); 10.1063/1.4958629",
+    .summary = "1 - 3x^2 + 2x^3, x = (r^2 - r_0^2)/(r_c^2 - r_0^2); Sanyal and Shell",
     .fields = sanyal_shell_fields,
     .size = sizeof(struct weight_parameters),
     .value = sanyal_shell_value,
