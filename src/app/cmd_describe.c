@@ -84,6 +84,7 @@ static const struct inner scene_objects[] = {
     {"dissipative_transverse", "friction weight perpendicular to the pair, likewise", "dissipative",
      TOPIC_PARTS},
     {"memory", "friction with memory: named modes, {\"slow\": {…}, …}", "memory", TOPIC_NAMED},
+    {"many_body", "energies of local densities, {\"cohesion\": {…}, …}", "many_body", TOPIC_NAMED},
     {"molecules", "named kinds of molecules, {\"hexane\": {…}, …}", "molecule", TOPIC_MOLECULES},
     {"bonds", "named groups of bonds, {\"backbone\": {\"law\": …}, …}", "bonds", TOPIC_NAMED},
     BONDED_LIST_BEYOND_BONDS(SAME_GROUPS){"interactions",
@@ -112,6 +113,12 @@ static const struct inner memory_objects[] = {
     {NULL, NULL, NULL, TOPIC_ONE},
 };
 
+static const struct inner many_body_objects[] = {
+    {"weight", "w(r), {\"law\": …}", "weight", TOPIC_ONE},
+    {"energy", "f(rho), {\"law\": …}", "energy", TOPIC_ONE},
+    {NULL, NULL, NULL, TOPIC_ONE},
+};
+
 static const struct inner map_objects[] = {
     {"beads", "named kinds of beads, {\"CH3\": {…}, \"OH\": {…}}", "bead", TOPIC_NAMED},
     {NULL, NULL, NULL, TOPIC_ONE},
@@ -122,10 +129,15 @@ static const struct {
     const char *topic;
     const struct inner *objects;
 } contents[] = {
-    {"run", run_objects},           {"scene", scene_objects},
-    {"unknowns", unknowns_objects}, {"potential", potential_objects},
-    {"omega", omega_objects},       {"map", map_objects},
-    {"memory", memory_objects},     {"molecule", molecule_objects},
+    {"run", run_objects},
+    {"scene", scene_objects},
+    {"unknowns", unknowns_objects},
+    {"potential", potential_objects},
+    {"omega", omega_objects},
+    {"map", map_objects},
+    {"memory", memory_objects},
+    {"molecule", molecule_objects},
+    {"many_body", many_body_objects},
 };
 
 static const struct topic fixed_topics[] = {
@@ -143,6 +155,10 @@ static const struct topic fixed_topics[] = {
      "memory",
      "a mode of \"memory\" of a scene: friction with memory",
      {mf_scene_memory_fields}},
+    {"files",
+     "many_body",
+     "\"many_body\" of a scene: f(rho) of each bead, rho = sum w(r) over its neighbours",
+     {mf_scene_many_body_fields}},
     {"files", "molecule", "a kind of \"molecules\" of a scene", {mf_scene_molecule_fields}},
     {"files", "chain", "\"chain\" of a molecule", {mf_scene_chain_fields}},
     {"files",
@@ -249,6 +265,8 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MAX_TOPICS]) {
                                          {mf_observables[k]->fields}};
     n = add_curves(topics, n, "conservative", mf_curve_potentials);
     n = add_curves(topics, n, "dissipative", mf_curve_omegas);
+    n = add_curves(topics, n, "weight", mf_weight_laws);
+    n = add_curves(topics, n, "energy", mf_density_energy_laws);
     for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t k = 0; mf_bonded_kinds[order]->laws[k]; k++)
             topics[n++] = (struct topic){mf_bonded_kinds[order]->plural,

@@ -50,17 +50,17 @@ static void markdown_paragraph(FILE *stream, const char *text) {
 }
 
 static void markdown_titles(FILE *stream, const char *const *titles) {
-    fprintf(stream, "\n|");
+    fprintf(stream, "\n"); // a first cell that is never empty needs no bar before it
     for (size_t k = 0; titles[k]; k++)
-        fprintf(stream, " %s |", titles[k]);
-    fprintf(stream, "\n|");
+        fprintf(stream, "%s |%s", titles[k], titles[k + 1] ? " " : "");
+    fprintf(stream, "\n");
     for (size_t k = 0; titles[k]; k++)
         fprintf(stream, "---|");
     fprintf(stream, "\n");
 }
 
 static void markdown_row(FILE *stream, const char *const *titles, const char *const *cells) {
-    fprintf(stream, "| `");
+    fprintf(stream, "`");
     write_markdown(stream, cells[0]);
     fprintf(stream, "` |");
     for (size_t k = 1; titles[k]; k++) {

@@ -156,10 +156,9 @@ static void write_fields(struct json_writer *writer, const struct topic *topic) 
 
 /// Which key of an object says which of a group it is; NULL: the keys themselves do.
 static const char *chief_of(const char *group) {
-    static const char *const chiefs[][2] = {{"conservative", "law"},
-                                            {"dissipative", "law"},
-                                            {"dynamics", "integrator"},
-                                            {"method", "name"}};
+    static const char *const chiefs[][2] = {{"conservative", "law"},    {"dissipative", "law"},
+                                            {"weight", "law"},          {"energy", "law"},
+                                            {"dynamics", "integrator"}, {"method", "name"}};
     for (size_t k = 0; k < sizeof chiefs / sizeof *chiefs; k++)
         if (strcmp(group, chiefs[k][0]) == 0)
             return chiefs[k][1];

@@ -13,13 +13,18 @@ enum { MAX_LEVELS = 200 };
 
 struct reader {
     const char *text, *at;
+    const char *variable; ///< its name
     struct expression *expression;
     int levels;
 };
 
+/// `what` may name the variable by %s.
 static enum status fault(const struct reader *reader, const char *what) {
-    return mf_status_fail(STATUS_BAD_INPUT, "the formula \"%s\", character %zu: %s", reader->text,
-                          (size_t)(reader->at - reader->text) + 1, what);
+    const char *name = strstr(what, "%s");
+    const int before = (int)(name ? name - what : (ptrdiff_t)strlen(what));
+    return mf_status_fail(STATUS_BAD_INPUT, "the formula \"%s\", character %zu: %.*s%s%s",
+                          reader->text, (size_t)(reader->at - reader->text) + 1, before, what,
+                          name ? reader->variable : "", name ? name + 2 : "");
 }
 
 static enum status push(struct reader *reader, enum expression_kind kind, double constant) {
@@ -65,12 +70,12 @@ static enum status read_name(struct reader *reader) {
     size_t length = 0;
     while (isalnum((unsigned char)reader->at[length]) || reader->at[length] == '_')
         length++;
-    if (length == 1 && *reader->at == 'r') {
-        reader->at++;
+    if (length == strlen(reader->variable) && strncmp(reader->at, reader->variable, length) == 0) {
+        reader->at += length;
         return push(reader, EXPRESSION_DISTANCE, 0);
     }
     if (length != 3 || strncmp(reader->at, "exp", 3) != 0)
-        return fault(reader, "unknown name: only r and exp(...) are allowed");
+        return fault(reader, "unknown name: only %s and exp(...) are allowed");
     reader->at += length;
     if (!take(reader, "("))
         return fault(reader, "expected \"(\" after exp");
@@ -86,8 +91,8 @@ static enum status read_atom(struct reader *reader) {
         return read_number(reader);
     if (isalpha((unsigned char)*reader->at))
         return read_name(reader);
-    return fault(reader, *reader->at ? "expected a number, r, exp or \"(\""
-                                     : "it ends where a number, r, exp or \"(\" is needed");
+    return fault(reader, *reader->at ? "expected a number, %s, exp or \"(\""
+                                     : "it ends where a number, %s, exp or \"(\" is needed");
 }
 
 /// What was read since node `begin` becomes one constant, if it is a number.
@@ -166,12 +171,18 @@ static enum status read_sum(struct reader *reader) {
     }
 }
 
-enum status mf_expression_parse(struct expression *expression, const char *text) {
-    struct reader reader = {.text = text, .at = text, .expression = expression};
+enum status mf_expression_parse_of(struct expression *expression, const char *text,
+                                   const char *variable) {
+    struct reader reader = {
+        .text = text, .at = text, .variable = variable, .expression = expression};
     *expression = (struct expression){0};
     TRY(read_sum(&reader));
     skip_blanks(&reader);
     if (*reader.at)
         return fault(&reader, "expected an operator: + - * / ^");
     return STATUS_OK;
+}
+
+enum status mf_expression_parse(struct expression *expression, const char *text) {
+    return mf_expression_parse_of(expression, text, "r");
 }

@@ -13,6 +13,10 @@ enum { EXPRESSION_TEXT_SIZE = 4096 };
 /// Fails: BAD_INPUT, with the place, counted from 1, of what is wrong. Tested: test_expression.
 enum status mf_expression_parse(struct expression *expression, const char *text) MUST_USE;
 
+/// The same of a variable that is not called r. Tested: test_weight.
+enum status mf_expression_parse_of(struct expression *expression, const char *text,
+                                   const char *variable) MUST_USE;
+
 enum expression_style {
     EXPRESSION_PLAIN, ///< as mf_expression_parse reads it
     EXPRESSION_LATEX,

@@ -30,17 +30,22 @@ static void clear(void *parameters) {
 
 static const char *const formats[] = {"columns", "votca", NULL};
 
+#define MEMBER(name) .offset = offsetof(struct sampled_parameters, name)
+// clang-format off
+#define FILE_NAME                                                                                  \
+    {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "", .help = "columns r, value"}
+#define CUTOFF                                                                                     \
+    {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 0, .minimum = 0, .maximum = DBL_MAX,       \
+     .unit = "lambda", .help = "distance beyond which it is 0; 0: the last r"}
+// clang-format on
 static const struct field fields[] = {
-    {"file", FIELD_FILE, .offset = offsetof(struct sampled_parameters, file), .required = true,
-     .unit = "", .help = "columns r, value"},
-    {"format", FIELD_CHOICE, .offset = offsetof(struct sampled_parameters, format),
-     .choices = formats, .initial = SAMPLED_COLUMNS, .unit = "",
-     .help = "votca: a .pot in nm and kJ/mol; the scene needs \"units\""},
-    {"cutoff", FIELD_NUMBER, .offset = offsetof(struct sampled_parameters, cutoff), .initial = 0,
-     .minimum = 0, .maximum = DBL_MAX, .unit = "lambda",
-     .help = "distance beyond which it is 0; 0: the last r"},
+    FILE_NAME,
+    {"format", FIELD_CHOICE, MEMBER(format), .choices = formats, .initial = SAMPLED_COLUMNS,
+     .unit = "", .help = "votca: a .pot in nm and kJ/mol; the scene needs \"units\""},
+    CUTOFF,
     FIELD_END,
 };
+static const struct field weight_fields[] = {FILE_NAME, CUTOFF, FIELD_END};
 
 const struct curve_family mf_sampled_family = {
     .name = "table",
@@ -58,6 +63,16 @@ const struct curve_family mf_sampled_omega_family = {
     .fields = fields,
     .size = sizeof(struct sampled_parameters),
     .value = omega_value,
+    .cutoff = cutoff,
+    .clear = clear,
+};
+
+const struct curve_family mf_sampled_weight_family = {
+    .name = "table",
+    .summary = "cubic spline through the points of a file",
+    .fields = weight_fields,
+    .size = sizeof(struct sampled_parameters),
+    .value = value,
     .cutoff = cutoff,
     .clear = clear,
 };

@@ -14,8 +14,12 @@ extern const struct curve_family mf_sampled_family;
 /// first 0, as a fit's friction weight is below its inner cutoff.
 extern const struct curve_family mf_sampled_omega_family;
 
+/// Of the weight of a local density: as of a potential, from a file of columns.
+extern const struct curve_family mf_sampled_weight_family;
+
 static inline bool curve_is_sampled(const struct curve_family *family) {
-    return family == &mf_sampled_family || family == &mf_sampled_omega_family;
+    return family == &mf_sampled_family || family == &mf_sampled_omega_family ||
+           family == &mf_sampled_weight_family;
 }
 
 enum { SAMPLED_COLUMNS, SAMPLED_VOTCA };

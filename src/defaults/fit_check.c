@@ -175,9 +175,10 @@ static enum status check_interactions(const struct fit_file *fit, const char *fi
     if (fit->method->kind != INVERSE_INVERSION || others == 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: scene.interactions: \"%s\" samples only pairs and molecules; use a "
+                          "%s: scene.%s: \"%s\" samples only pairs and molecules; use a "
                           "method that simulates candidates, such as \"gauss-newton\"",
-                          file, fit->method->name);
+                          file, fit->scene.many_body.law ? "many_body" : "interactions",
+                          fit->method->name);
 }
 
 /// Without velocities there is no VACF to be measured, and without time nothing that needs it.

@@ -176,7 +176,7 @@ static void list(struct entries *entries, const struct scene *scene) {
     add_groups(entries, &scene->molecules.molecules);
     for (int k = 0; k < setup->interactions; k++) {
         const struct interaction_choice *choice = &setup->interaction[k];
-        if (choice->kind == &mf_molecules)
+        if (choice->kind->fields == NULL) // their numbers are those of their laws
             continue;
         char prefix[INVERSE_NUMBER_NAME_SIZE];
         snprintf(prefix, sizeof prefix, "interactions.%s.", choice->kind->name);

@@ -78,9 +78,10 @@ extern const struct interaction mf_pairs;
 /// itself.
 extern const struct interaction mf_molecules;
 
-/// How many a scene can have: all that it can name, and molecules.
+/// How many a scene can have: all that it can name, molecules, and energies of local densities
+/// (forces/many_body.h).
 #define INTERACTION_COUNT(record) +1
-enum { INTERACTION_MAX = INTERACTIONS(INTERACTION_COUNT) + 1 };
+enum { INTERACTION_MAX = INTERACTIONS(INTERACTION_COUNT) + 2 };
 #undef INTERACTION_COUNT
 
 /// An interaction and its numbers.

@@ -95,3 +95,56 @@ enum status mf_reference_configurational(const struct table *potential,
             *squares += force[3 * k + (size_t)d] * beside[d][k];
     return STATUS_OK;
 }
+
+static bool is_of(uint32_t set, const struct many_body *many_body, uint32_t id) {
+    return set >> mf_composition_type(&many_body->composition, id) & 1;
+}
+
+/// ρ_i of a term.
+static double density_of(const struct many_body *many_body, const struct many_body_term *term,
+                         const struct particles *particles, size_t i) {
+    double density = 0, r_ij[3], weight;
+    for (size_t j = 0; j < particles->count; j++) {
+        const double r = separation(particles, i, j, r_ij);
+        mf_weight_evaluate(&term->weight, r, &weight, NULL);
+        if (j != i && is_of(term->neighbours, many_body, particles->id[j]))
+            density += weight;
+    }
+    return density;
+}
+
+static void add_term(const struct many_body *many_body, const struct many_body_term *term,
+                     const struct particles *particles, double *slope, double *const *force,
+                     struct pair_sums *sums) {
+    for (size_t i = 0; i < particles->count; i++) {
+        const double density = density_of(many_body, term, particles, i);
+        const double energy = mf_density_energy_value(&term->energy, density, &slope[i]);
+        const bool central = is_of(term->central, many_body, particles->id[i]);
+        slope[i] = central ? slope[i] : 0;
+        sums->energy += central ? energy : 0;
+    }
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t j = 0; j < particles->count; j++) {
+            double r_ij[3], change; // of w
+            const double r = separation(particles, i, j, r_ij);
+            if (i == j)
+                continue;
+            mf_weight_evaluate(&term->weight, r, NULL, &change);
+            const bool i_counts = is_of(term->neighbours, many_body, particles->id[i]);
+            const bool j_counts = is_of(term->neighbours, many_body, particles->id[j]);
+            const double pull = -(slope[i] * j_counts + slope[j] * i_counts) * change;
+            for (int d = 0; d < particles->box.dimensions; d++)
+                force[d][i] += pull * r_ij[d] / r;
+            sums->virial += 0.5 * pull * r;
+        }
+}
+
+enum status mf_reference_many_body(const struct many_body *many_body,
+                                   const struct particles *particles, double *const *force,
+                                   struct pair_sums *sums) {
+    OWNED double *slope = NULL;
+    TRY_ARRAY(slope, particles->count);
+    for (int t = 0; t < many_body->terms; t++)
+        add_term(many_body, &many_body->term[t], particles, slope, force, sums);
+    return STATUS_OK;
+}

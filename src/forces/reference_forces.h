@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file What the pair kernels do not find: energies of particles, and the configurational
-/// temperature.
+/// temperature; and a slow twin of local densities.
 #pragma once
 
-#include "forces/pair.h"
+#include "forces/many_body.h"
 
 /// Energy that each particle has of its pairs: half of Φ of each of them.
 /// @param[in] neighbours  half list, complete for the cutoff of the potential
@@ -31,3 +31,12 @@ enum status mf_reference_configurational(const struct table *potential,
                                          const struct particles *particles,
                                          const struct neighbours *neighbours, double *const *beside,
                                          double *squares, double *laplacian) MUST_USE;
+
+/// Energies, forces and virials of local densities by two loops over all pairs, in double
+/// precision: what the vector kernels must find.
+/// @param[out] force  shape [dimensions][count], to be added to [k_B T_0/λ]
+/// @param[out] sums   to be added to
+/// Fails: NO_MEMORY.
+enum status mf_reference_many_body(const struct many_body *many_body,
+                                   const struct particles *particles, double *const *force,
+                                   struct pair_sums *sums) MUST_USE;

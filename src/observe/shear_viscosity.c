@@ -5,6 +5,7 @@
 #include "base/number_text.h"
 #include "base/statistics.h"
 #include "dynamics/respa.h"
+#include "forces/many_body.h"
 #include "forces/shear_wave.h"
 #include "forces/transfer.h"
 #include "io/data_table.h"
@@ -51,7 +52,7 @@ static const struct field fields[] = {
 // Sampling ----------------------------------------------------------------------------------------
 
 static bool conserves_momentum(const struct interaction *kind) {
-    return kind == &mf_shear_wave || kind == &mf_molecules;
+    return kind == &mf_shear_wave || kind == &mf_molecules || kind == &mf_many_body;
 }
 
 static enum status check(const struct simulation *simulation, bool driven) {

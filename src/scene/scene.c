@@ -125,6 +125,8 @@ static void check_moves(const struct scene *scene, struct json_object *object) {
         const struct interaction *kind = setup->interaction[k].kind;
         char key[64];
         snprintf(key, sizeof key, "interactions.%s", kind->name);
+        if (kind == &mf_many_body)
+            snprintf(key, sizeof key, "many_body");
         if (kind != &mf_molecules)
             mf_json_fault(
                 object, key,
@@ -325,6 +327,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
                              unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
     TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
+    TRY(mf_scene_many_body_read(&scene->many_body, object, &scene->setup));
     enter_molecules(scene, object);
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
@@ -336,6 +339,7 @@ void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->potential);
     mf_scene_law_clear(&scene->omega);
     mf_scene_memory_clear(&scene->memory);
+    mf_scene_many_body_clear(&scene->many_body);
     mf_memory_free(scene->start_values);
     mf_memory_free(scene->integrator_parameters);
     mf_scene_interactions_clear(&scene->interactions);
@@ -379,6 +383,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     if (scene->omega.curves)
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
     mf_scene_memory_write(&scene->memory, &setup->composition, writer);
+    mf_scene_many_body_write(&scene->many_body, writer);
     mf_scene_interactions_write(&scene->interactions, writer);
     mf_json_begin(writer, "dynamics");
     mf_json_write_text(writer, "integrator", setup->integrator->name);
@@ -395,6 +400,7 @@ void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->potential, digest);
     mf_scene_law_digest(&scene->omega, digest);
     mf_scene_memory_digest(&scene->memory, digest);
+    mf_scene_many_body_digest(&scene->many_body, digest);
     mf_scene_molecules_digest(&scene->molecules, digest);
     mf_scene_particles_digest(scene, digest);
 }

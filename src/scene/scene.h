@@ -5,6 +5,7 @@
 #include "dynamics/simulation.h"
 #include "scene/scene_interactions.h"
 #include "scene/scene_law.h"
+#include "scene/scene_many_body.h"
 #include "scene/scene_memory.h"
 #include "scene/scene_molecules.h"
 
@@ -22,6 +23,7 @@ struct scene {
     struct simulation_setup setup;
     struct scene_law potential, omega;
     struct scene_memory memory;
+    struct scene_many_body many_body;
     struct scene_interactions interactions;
     struct scene_molecules molecules;
     struct units units;

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "curves/sampled.h"
+#include "curves/weight.h"
 #include "scene/pair_names.h"
 #include "io/data_table.h"
 #include "io/votca.h"
@@ -91,7 +92,9 @@ static bool is_usable(const struct curve *curve) {
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
                                 const struct curve_family *const *list, const struct units *units) {
     const char **names;
-    const char *unit = list == mf_curve_potentials ? "k_B T_0" : "sqrt(mu/tau)";
+    const char *unit = list == mf_curve_potentials ? "k_B T_0"
+                       : list == mf_weight_laws    ? ""
+                                                   : "sqrt(mu/tau)";
     struct json_object object = mf_json_child_of(parent, key, false, "law");
     if (object.item == NULL)
         return STATUS_OK;

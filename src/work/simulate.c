@@ -282,6 +282,19 @@ static void remove_checkpoint(const struct run *run) {
     mf_tracked_files_remove(path);
 }
 
+/// Where local densities went beyond what their energies are tabulated for.
+static void print_remarks(struct run *run) {
+    const struct simulation *simulation = &run->simulation;
+    for (int k = 0; k < simulation->interactions; k++) {
+        const struct interaction_use *use = &simulation->interaction[k];
+        const struct many_body *many_body = use->choice.parameters;
+        char line[MANY_BODY_REMARK_SIZE];
+        for (int t = 0; use->choice.kind == &mf_many_body && t < many_body->terms; t++)
+            if (mf_many_body_remark(many_body, use->state, t, line))
+                mf_progress_print(&run->progress, "mesofit: warning: %s", line);
+    }
+}
+
 static enum status write_results(struct run *run) {
     const double taken = seconds(run);
     const struct observable_results results = results_of(run);
@@ -290,6 +303,7 @@ static enum status write_results(struct run *run) {
     remove_checkpoint(run);
     mf_run_folder_draw(&run->folder);
     mf_simulate_observables_print(&run->observables, &results, &run->progress);
+    print_remarks(run);
     mf_progress_print(&run->progress, "%llu steps in %.3g s; results in %s",
                       (unsigned long long)run->simulation.step, taken, run->folder.path);
     return STATUS_OK;
