@@ -98,6 +98,9 @@ static void complete(struct system *system, struct json_object *scene) {
                 scene, "temperature",
                 is_number
                     ? "0 K gives no unit of energy; \"temperature\" of \"units\" gives another"
+                : scene->path[0]
+                    ? "missing: expected a number (K), as fit --target DIR takes it by "
+                      "--temperature"
                     : "missing: expected a number (K)");
         system->temperature = 300;
     }

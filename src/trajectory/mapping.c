@@ -30,24 +30,36 @@ done:
     return status;
 }
 
-/// The type of an atom; `count` if it has none.
-static size_t type_of(const struct structure_atom *atom, const char *const *types, size_t count) {
+/// The type of an atom, by its name or else by the number of its type; `count` if it has none.
+static size_t type_of(const struct structure_atom *atom, const char *const *types, size_t count,
+                      bool *by_number) {
     for (size_t type = 0; type < count; type++)
         if (strcmp(types[type], atom->name) == 0)
             return type;
+    *by_number = true;
     return atom->type >= 1 && (uint64_t)atom->type <= count ? (size_t)atom->type - 1 : count;
 }
 
 static enum status take_atoms(struct mapping *mapping, const struct structure *structure,
                               const char *const *types, const char *file) {
+    OWNED bool *told = NULL;
+    TRY_ARRAY(told, mapping->types + 1);
     for (size_t k = 0; k < structure->atoms; k++) {
         const struct structure_atom *const atom = &structure->atom[k];
-        const size_t type = type_of(atom, types, mapping->types);
+        bool by_number = false;
+        const size_t type = type_of(atom, types, mapping->types, &by_number);
         if (type == mapping->types)
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s: no type has the name of atom %zu, \"%s\"; map atoms to beads by --map", file,
                 k + 1, atom->name);
+        if (by_number && !told[type] && structure->names != STRUCTURE_TYPES) {
+            told[type] = true;
+            TRY(mf_mapping_note(mapping,
+                                "%s: atoms \"%s\" of type number %zu are beads \"%s\", the type of "
+                                "that number: no type is called \"%s\"",
+                                file, atom->name, type + 1, types[type], atom->name));
+        }
         mapping->atom[k] = k;
         mapping->weight[k] = 1;
         mapping->bead[mapping->beads++] =

@@ -48,16 +48,33 @@ static void list_formats(char *hint) {
              ", also as .gz or .zst; gmx trjconv, cpptraj, VMD or MDAnalysis convert others");
 }
 
+/// A file's name as a shell takes it: in quotes, with each ' as '\\'', if it has more than letters,
+/// digits and what is safe.
+static void quote(const char *file, char *quoted, size_t size) {
+    static const char safe[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+";
+    size_t length = 0;
+    const bool plain = file[strspn(file, safe)] == '\0';
+    const char *const mark = plain ? "" : "'";
+    length += (size_t)snprintf(quoted, size, "%s", mark);
+    for (; *file && length + 6 < size; file++)
+        length +=
+            (size_t)snprintf(quoted + length, size - length, *file == '\'' ? "'\\''" : "%c", *file);
+    snprintf(quoted + length, size - length, "%s%s", *file ? "…" : "", mark);
+}
+
 /// What another format is called or begins with, and what is to be done about it.
 static void find_hint(const char *file, const unsigned char *begin, size_t size, char *hint) {
+    char name[256];
+    quote(file, name, sizeof name);
     if (ends_with(file, ".tpr") || (size >= 15 && memcmp(begin + 8, "VERSION", 7) == 0))
         snprintf(hint, HINT,
-                 "GROMACS's .tpr is not read: \"gmx editconf -f %.100s -o conf.gro\" writes names "
+                 "GROMACS's .tpr is not read: \"gmx editconf -f %s -o conf.gro\" writes names "
                  "and residues, and topol.top has masses (-s)",
-                 file);
+                 name);
     else if (ends_with(file, ".tng") || (size >= 52 && memcmp(begin + 40, "GENERAL INFO", 12) == 0))
-        snprintf(hint, HINT, "TNG is not read: \"gmx trjconv -f %.100s -o traj.xtc\" makes what is",
-                 file);
+        snprintf(hint, HINT, "TNG is not read: \"gmx trjconv -f %s -o traj.xtc\" makes what is",
+                 name);
     else if (ends_with(file, ".trz"))
         snprintf(hint, HINT, "TRZ is not read: MDAnalysis makes .xtc or .dcd of it");
     else
@@ -84,14 +101,25 @@ static enum status find_format(struct trajectory *trajectory) {
     return mf_status_fail(STATUS_BAD_INPUT, "%s: not a trajectory: %s", trajectory->file, hint);
 }
 
+/// Reduced units have no size: ours is as good as any, and shapes all that is printed.
+static void note_reduced(struct trajectory *trajectory, const char *units) {
+    if (units && strcmp(units, "lj") == 0 && trajectory->note[0] == '\0')
+        snprintf(
+            trajectory->note, sizeof trajectory->note,
+            "%.150s: units lj: 1 is taken as 1 nm, 1 ps and 1 u, so that k_B T = 1 is 120.272 K",
+            trajectory->file);
+}
+
 /// What is given, unless the format has units of its own; else Å, fs and u, unless only the file
 /// can know.
 static enum status find_units(struct trajectory *trajectory, const char *units) {
     const struct trajectory_format *const format = trajectory->format;
     if (format->unit_source == TRAJECTORY_OWN_UNITS)
         trajectory->scale = (struct trajectory_scale){1, 1, 1, 1};
-    else if (units || format->unit_source == TRAJECTORY_ANGSTROM)
+    else if (units || format->unit_source == TRAJECTORY_ANGSTROM) {
+        note_reduced(trajectory, units);
         return mf_trajectory_units_find(units ? units : "real", &trajectory->scale);
+    }
     return STATUS_OK;
 }
 
@@ -100,6 +128,7 @@ enum status mf_trajectory_found_units(struct trajectory *trajectory, const char 
     if (mf_trajectory_units_find(name, &scale) != STATUS_OK)
         return mf_status_prefix(STATUS_BAD_INPUT, "%s", trajectory->file);
     const bool given = trajectory->scale.length > 0;
+    note_reduced(trajectory, name);
     if (given && memcmp(&scale, &trajectory->scale, sizeof scale) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has the units \"%s\"",
                               trajectory->file, name);

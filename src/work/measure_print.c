@@ -137,6 +137,47 @@ static void print_pairs(struct progress *progress, const struct measure_result *
                           measured->plan.q_maximum, (long long)measured->plan.waves);
 }
 
+/// A temperature that is given, and that of the velocities: they are those of whole beads, so that
+/// constraints within beads do no harm, but those between beads make it too low.
+static void print_temperature(struct progress *progress, const struct measure_result *result) {
+    static const double tolerance = 0.03, errors = 4;
+    const struct series *const kinetic = &result->measured->motion.temperature;
+    const double given = result->request->temperature, mean = mf_series_mean(kinetic);
+    const double error = mf_series_error(kinetic);
+    char text[NUMBER_TEXT_SIZE];
+    mf_number_text(mean, error, text);
+    if (isnan(given) && kinetic->count == 0)
+        mf_progress_print(
+            progress,
+            "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
+            result->mapping->broken ? " by parts of molecules"
+            : result->measured->slots > 0 && result->measured->slot[0].beads.has_velocities
+                ? ", since velocities are used with times alone (--file-time-step, no --static)"
+                : "");
+    else if (kinetic->count > 0 && !isnan(given) && fabs(given - mean) > tolerance * given &&
+             !(fabs(given - mean) <= errors * error))
+        mf_progress_print(
+            progress,
+            "mesofit: warning: --temperature %g, but the velocities of the beads have "
+            "%s K: another temperature, other units, or constraints between beads, "
+            "each of which takes a degree of freedom of 3 a bead",
+            given, text);
+}
+
+/// Units that were told are wrong more often than matter is so hot or cold.
+static void print_speeds(struct progress *progress, const struct measure_result *result) {
+    static const double hottest = 1e4, coldest = 1;
+    const char *const units = result->request->frames.options.units;
+    const struct series *const kinetic = &result->measured->motion.temperature;
+    const double kelvin = mf_series_mean(kinetic);
+    if (units && kinetic->count > 0 && (kelvin < coldest || kelvin > hottest))
+        mf_progress_print(
+            progress,
+            "mesofit: warning: --file-units %s make velocities of %.3g K: is the file "
+            "in other units?",
+            units, kelvin);
+}
+
 /// What a person is to know.
 static void print_all(struct progress *progress, const struct measure_result *result) {
     const struct measured *const measured = result->measured;
@@ -159,11 +200,8 @@ static void print_all(struct progress *progress, const struct measure_result *re
     if (measured->motion.begun && mf_measure_output_masses_differ(result))
         mf_progress_print(progress, "masses of beads differ: target.json has motion compared "
                                     "with and not fitted, since friction is for one mass");
-    if (isnan(result->request->temperature) && measured->motion.temperature.count == 0)
-        mf_progress_print(
-            progress,
-            "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
-            result->mapping->broken ? " by parts of molecules" : "");
+    print_speeds(progress, result);
+    print_temperature(progress, result);
 }
 
 enum status mf_measure_print(struct progress *progress, const struct measure_result *result) {

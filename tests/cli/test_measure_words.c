@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What `mesofit measure` says where a person is likely to be wrong: units, temperatures, types by
+// their numbers, formats that other programs convert.
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { ATOMS = 60, FRAMES = 30, TEXT = 1 << 20 };
+
+static struct run_program_result result;
+
+static double chance(unsigned *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) * 0x1p-24;
+}
+
+/// A number of mean 0 and variance 1.
+static double normal(unsigned *seed) {
+    double sum = -6;
+    for (int k = 0; k < 12; k++)
+        sum += chance(seed);
+    return sum;
+}
+
+/// Argon at 300 K in a cube of 20 Å, in LAMMPS's units real: sqrt(k_B T/m) is 2.4988e-3 Å/fs.
+static void write_argon(struct temporary_folder *folder) {
+    static char text[TEXT];
+    size_t length = 0;
+    unsigned seed = 5;
+    for (int t = 0; t < FRAMES; t++) {
+        length +=
+            (size_t)snprintf(text + length, TEXT - length,
+                             "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS "
+                             "pp pp pp\n0 20\n0 20\n0 20\nITEM: ATOMS id type element mass x "
+                             "y z vx vy vz\n",
+                             t, ATOMS);
+        for (int k = 0; k < ATOMS; k++)
+            length += (size_t)snprintf(
+                text + length, TEXT - length, "%d %d Ar 39.948 %g %g %g %g %g %g\n", k + 1,
+                1 + k % 2, 20 * chance(&seed), 20 * chance(&seed), 20 * chance(&seed),
+                2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed));
+    }
+    temporary_folder_write(folder, "a.dump", text, length);
+}
+
+#define MEASURE(...)                                                                               \
+    do {                                                                                           \
+        RUN_PROGRAM(&result, "measure", "a.dump", "--q-range", "0", "--force", "-o", "out",        \
+                    __VA_ARGS__);                                                                  \
+        run_program_assert_code(&result, 0);                                                       \
+    } while (0)
+
+static void assert_without(const char *words) {
+    if (strstr(result.err, words))
+        fail_msg("\"%s\" in:\n%s", words, result.err);
+}
+
+static void test_a_temperature_that_velocities_have_not(void **state) {
+    write_argon(*state);
+    MEASURE("--file-units", "real", "--file-time-step", "0.01", "--temperature", "400");
+    assert_contains(result.err,
+                    "warning: --temperature 400, but the velocities of the beads have ");
+    MEASURE("--file-units", "real", "--file-time-step", "0.01", "--temperature", "302");
+    assert_without("warning: --temperature");
+    assert_without("other units?");
+}
+
+static void test_units_that_cannot_be(void **state) {
+    write_argon(*state);
+    MEASURE("--file-units", "lj", "--static", "--range", "2", "--bins", "10");
+    assert_contains(result.err, "a.dump: units lj: 1 is taken as 1 nm, 1 ps and 1 u, so that "
+                                "k_B T = 1 is 120.272 K");
+    assert_without("other units?");
+    MEASURE("--file-units", "micro", "--static", "--range", "2", "--bins", "10");
+    assert_contains(result.err, "warning: --file-units micro make 7.5e-12 beads in a nm^3: is the "
+                                "file in other units?");
+    MEASURE("--file-units", "metal", "--file-time-step", "0.01");
+    assert_contains(result.err, "warning: --file-units metal make velocities of ");
+}
+
+static void test_velocities_without_times(void **state) {
+    write_argon(*state);
+    MEASURE("--file-units", "real", "--static");
+    assert_contains(result.err, "unknown temperature, since velocities are used with times alone "
+                                "(--file-time-step, no --static)");
+    RUN_PROGRAM(&result, "fit", "--target", "out", "-o", "fit");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "out/target.json: scene.temperature: missing: expected a number "
+                                "(K), as fit --target DIR takes it by --temperature");
+}
+
+/// Atoms are called Ar, types X and Y: LAMMPS's numbers are all that there is.
+static void test_types_by_their_numbers(void **state) {
+    static const char types[] = "{\"particles\": {\"types\": {\"X\": 3, \"Y\": 3}},\n"
+                                "\"molecules\": {\"one\": {\"count\": 1, \"beads\": [\"X\"]}}}\n";
+    write_argon(*state);
+    small_inputs_write(*state, "scene.json", types, NULL, NULL);
+    MEASURE("--file-units", "real", "--static", "--temperature", "300", "--molecules",
+            "scene.json");
+    assert_contains(result.err, "scene.json: atoms \"Ar\" of type number 1 are beads \"X\", the "
+                                "type of that number: no type is called \"Ar\"");
+    assert_contains(result.err, "\"Ar\" of type number 2 are beads \"Y\"");
+}
+
+/// A line that a shell takes as it is.
+static void test_names_with_blanks_are_quoted(void **state) {
+    temporary_folder_write(*state, "it's mine.tpr", "\0\0\0\15\0\0\0\14VERSION 2020", 20);
+    RUN_PROGRAM(&result, "measure", "it's mine.tpr", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "\"gmx editconf -f 'it'\\''s mine.tpr' -o conf.gro\"");
+}
+
+#define TEST(name)                                                                                 \
+    cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(test_a_temperature_that_velocities_have_not), TEST(test_units_that_cannot_be),
+        TEST(test_velocities_without_times), TEST(test_types_by_their_numbers),
+        TEST(test_names_with_blanks_are_quoted)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
