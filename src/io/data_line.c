@@ -101,7 +101,9 @@ bool mf_data_word_next(const struct data_line *line, char separator, struct data
     if (separator != ' ' && *at == separator)
         at += 1 + strspn(at + 1, blanks);
     *word = take_word(line, separator, at);
-    return at < line->end;
+    // Empty cells at the end, as of ",,", are no words.
+    const char more[] = {separator, ' ', '\t', '\r', '\0'};
+    return at + strspn(at, more) < line->end;
 }
 
 size_t mf_data_word_count(const struct data_line *line, char separator) {

@@ -45,7 +45,7 @@ struct data_word {
 
 struct data_word mf_data_word_first(const struct data_line *line, char separator);
 
-/// Step to the next word; false after the last. A separator at the end begins no further word.
+/// Step to the next word; false after the last. Separators at the end begin no further words.
 bool mf_data_word_next(const struct data_line *line, char separator, struct data_word *word);
 
 size_t mf_data_word_count(const struct data_line *line, char separator);

@@ -230,8 +230,11 @@ static enum status read_row(const struct data_table *table, const char *file, st
         mf_data_word_next(line, layout->separator, &word);
     }
     if (words != wanted)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu", file,
-                              line->number, words, wanted);
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu%s",
+                              file, line->number, words, wanted,
+                              layout->separator != ' ' && words < wanted
+                                  ? ": a cell is empty; leave out its row"
+                                  : "");
     return STATUS_OK;
 }
 

@@ -5,6 +5,7 @@
 #include "io/input.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -63,8 +64,13 @@ static enum status check_is_text(const char *file, const char *text, size_t leng
     if (nul == NULL)
         return STATUS_OK;
     const struct text_place place = mf_text_file_place(text, nul);
-    return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: a NUL byte: this is not a UTF-8 text file",
-                          file, place.line, place.column);
+    // A zip, as .xlsx and .ods are; UTF-16, as programs with tables call "Unicode".
+    const bool sheet =
+        length > 1 && (memcmp(text, "PK", 2) == 0 || memcmp(text, "\xff\xfe", 2) == 0 ||
+                       memcmp(text, "\xfe\xff", 2) == 0);
+    return mf_status_fail(
+        STATUS_BAD_INPUT, "%s:%zu:%zu: a NUL byte: this is not a UTF-8 text file%s", file,
+        place.line, place.column, sheet ? "; save the spreadsheet as CSV (UTF-8)" : "");
 }
 
 static _Thread_local const struct memory_file *memory_file_list;

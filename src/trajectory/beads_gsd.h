@@ -5,8 +5,8 @@
 
 #include "trajectory/beads_file.h"
 
-/// Fails: BAD_INPUT without a box, for one that the format has not, and without velocities if the first frame
-/// had them.
+/// Fails: BAD_INPUT without a box, for one that the format has not, and without velocities if the
+/// first frame had them.
 enum status mf_beads_gsd_print(struct beads_file *file,
                                const struct trajectory_frame *beads) MUST_USE;
 
