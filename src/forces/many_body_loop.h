@@ -16,29 +16,61 @@
 #define MANY_BODY_PAIRS pair
 #endif
 
-/// w of each pair of a batch, in `weight`; the pairs go to `pair`, in whole vectors.
-INLINE void many_body_weights(REAL *weight, REAL (*pair)[4], const struct pair_batch *batch,
-                              int count, const struct weight_table *law, const int dim) {
+/// What is computed from a batch, column by column: one loop from separations to pairs is a chain
+/// that is too long for a processor to overlap several (pair_loop.h).
+struct many_body_columns {
+    REAL inverse_r[PAIR_BATCH], fraction[PAIR_BATCH], weight[PAIR_BATCH], pull[PAIR_BATCH];
+    int32_t interval[PAIR_BATCH];
+};
+
+/// Places in the table of w, which is flat below `inner`; beyond the cutoff is the last row, of
+/// zeros.
+INLINE void many_body_distances(struct many_body_columns *columns, const struct pair_batch *batch,
+                                int count, const struct weight_table *law, const int dim) {
     const lanes_real inner = lanes_all((REAL)law->inner), zero = lanes_all(0);
     const lanes_real inverse_spacing = lanes_all((REAL)law->table.inverse_spacing);
-    const lanes_real spacing = lanes_all((REAL)(1 / law->table.inverse_spacing));
     for (int k = 0; k < count; k += LANES) {
         const lanes_real dx = lanes_load(batch->dx + k), dy = lanes_load(batch->dy + k);
-        const lanes_real dz = dim == 3 ? lanes_load(batch->dz + k) : zero;
-        const lanes_real r = lanes_sqrt(dx * dx + dy * dy + dz * dz);
-        // Flat below `inner`; beyond the cutoff is the last row, of zeros.
-        const lanes_real beyond = -lanes_min(inner - r, zero);
+        lanes_real r2 = dx * dx + dy * dy;
+        if (dim == 3) {
+            const lanes_real dz = lanes_load(batch->dz + k);
+            r2 += dz * dz;
+        }
+        const lanes_real r = lanes_sqrt(r2), beyond = -lanes_min(inner - r, zero);
         const lanes_real place = lanes_min(beyond * inverse_spacing, lanes_all(TABLE_INTERVALS));
         const lanes_int interval = lanes_to_int(place);
-        int32_t row[LANES];
-        lanes_store_int(row, interval);
-        const lanes_real f = place - lanes_to_real(interval);
-        const struct lanes_record c = lanes_load_records(law->table.PAIR_ROWS, row);
+        lanes_store(columns->inverse_r + k, 1 / r);
+        lanes_store_int(columns->interval + k, interval);
+        lanes_store(columns->fraction + k, place - lanes_to_real(interval));
+    }
+}
+
+/// w and −w'/r.
+INLINE void many_body_weights(struct many_body_columns *columns, int count,
+                              const struct weight_table *law) {
+    const lanes_real spacing = lanes_all((REAL)(1 / law->table.inverse_spacing));
+    for (int k = 0; k < count; k += LANES) {
+        const struct lanes_record c =
+            lanes_load_records(law->table.PAIR_ROWS, columns->interval + k);
+        const lanes_real f = lanes_load(columns->fraction + k);
         const lanes_real force = c.word[1] + f * (c.word[2] + f * c.word[3]);
         const lanes_real half = c.word[2] / 2, third = c.word[3] / 3;
-        lanes_store(weight + k, c.word[0] - spacing * f * (c.word[1] + f * (half + f * third)));
-        lanes_store_records(pair + k, dx, dy, dz, force / r);
+        lanes_store(columns->weight + k,
+                    c.word[0] - spacing * f * (c.word[1] + f * (half + f * third)));
+        lanes_store(columns->pull + k, force * lanes_load(columns->inverse_r + k));
     }
+}
+
+/// Keep the pairs, in whole vectors: there is room for more.
+INLINE void many_body_keep(const struct many_body_columns *columns, const struct pair_batch *batch,
+                           int count, struct many_body_work *work, size_t end, const int dim) {
+    REAL(*pair)[4] = work->MANY_BODY_PAIRS + end;
+    for (int k = 0; k < count; k += LANES)
+        lanes_store_records(pair + k, lanes_load(batch->dx + k), lanes_load(batch->dy + k),
+                            dim == 3 ? lanes_load(batch->dz + k) : lanes_all(0),
+                            lanes_load(columns->pull + k));
+    memcpy(work->i + end, batch->i, (size_t)count * sizeof *work->i);
+    memcpy(work->j + end, batch->j, (size_t)count * sizeof *work->j);
 }
 
 /// Add the weights to the densities of both beads of each pair.
@@ -64,12 +96,12 @@ INLINE void many_body_scatter(const REAL *weight, const struct pair_batch *batch
 INLINE void many_body_evaluate(struct pair_batch *batch, int count,
                                const struct many_body_term *term, struct many_body_work *work,
                                int part, const int dim, const bool mixed) {
-    REAL weight[PAIR_BATCH];
+    struct many_body_columns columns;
     const size_t end = work->end[part];
-    many_body_weights(weight, work->MANY_BODY_PAIRS + end, batch, count, &term->weight, dim);
-    many_body_scatter(weight, batch, count, work, mixed);
-    memcpy(work->i + end, batch->i, (size_t)count * sizeof *work->i);
-    memcpy(work->j + end, batch->j, (size_t)count * sizeof *work->j);
+    many_body_distances(&columns, batch, count, &term->weight, dim);
+    many_body_weights(&columns, count, &term->weight);
+    many_body_scatter(columns.weight, batch, count, work, mixed);
+    many_body_keep(&columns, batch, count, work, end, dim);
     work->end[part] = end + (size_t)count;
 }
 
