@@ -50,23 +50,26 @@ static void markdown_paragraph(FILE *stream, const char *text) {
 }
 
 static void markdown_titles(FILE *stream, const char *const *titles) {
-    fprintf(stream, "\n|");
+    fprintf(stream, "\n");
     for (size_t k = 0; titles[k]; k++)
-        fprintf(stream, " %s |", titles[k]);
+        fprintf(stream, "%s| %s", k ? " " : "", titles[k]);
     fprintf(stream, "\n|");
     for (size_t k = 0; titles[k]; k++)
         fprintf(stream, "---|");
     fprintf(stream, "\n");
 }
 
+/// Without the empty cells at the end, which a table needs not, nor a line's last bar.
 static void markdown_row(FILE *stream, const char *const *titles, const char *const *cells) {
+    size_t last = 0;
+    for (size_t k = 0; titles[k]; k++)
+        last = cells[k][0] ? k : last;
     fprintf(stream, "| `");
     write_markdown(stream, cells[0]);
-    fprintf(stream, "` |");
-    for (size_t k = 1; titles[k]; k++) {
-        fprintf(stream, "%s", cells[k][0] ? " " : "");
+    fprintf(stream, "`");
+    for (size_t k = 1; k <= last; k++) {
+        fprintf(stream, " |%s", cells[k][0] ? " " : "");
         write_markdown(stream, cells[k]);
-        fprintf(stream, " |");
     }
     fprintf(stream, "\n");
 }

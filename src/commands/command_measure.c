@@ -17,6 +17,7 @@ enum {
     BINS,
     Q_RANGE,
     WAVES,
+    WEIGHTED,
     WINDOW,
     ESCAPE,
     VELOCITIES,
@@ -43,6 +44,8 @@ static const struct command_option options[] = {
     [BINS] = {"--bins", "N", "bins of g(r); else 0.01 nm wide"},
     [Q_RANGE] = {"--q-range", "Q", "range of S(q) [1/nm]; else 4 pi density^(1/3); 0: no S(q)"},
     [WAVES] = {"--waves", "N", "most wave vectors in a bin of S(q); else 10"},
+    [WEIGHTED] = {"--weighted-density", "R0,RC",
+                  "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]"},
     [WINDOW] = {"--window", "T",
                 "window of MSD, VACF, escape times [ps]; else a tenth, 100 frames at most"},
     [ESCAPE] = {"--escape", "R",
@@ -123,6 +126,26 @@ static enum status read_box(const struct command_line *line, double box[3]) {
     return STATUS_OK;
 }
 
+/// "R0,RC", the first below the second.
+static enum status read_weighted(const struct command_line *line,
+                                 struct weighted_density_settings *settings) {
+    enum { BINS_OF_DENSITY = 200 };
+    const char *const text = line->own[WEIGHTED];
+    char *end = NULL, *last = NULL;
+    if (text == NULL)
+        return STATUS_OK;
+    settings->bins = BINS_OF_DENSITY;
+    settings->inner_cutoff = strtod(text, &end);
+    settings->cutoff = *end == ',' ? strtod(end + 1, &last) : NAN;
+    if (end > text && last > end + 1 && *last == '\0' && settings->inner_cutoff >= 0 &&
+        settings->cutoff > settings->inner_cutoff && isfinite(settings->cutoff))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "--weighted-density takes two distances, the first below the second, as "
+                          "0.3,0.7, not \"%.60s\"",
+                          text);
+}
+
 static enum status read_request(const struct command_line *line, struct measure_request *request) {
     static const double above_zero = 1e-300;
     struct frames_plan *const frames = &request->frames;
@@ -137,6 +160,7 @@ static enum status read_request(const struct command_line *line, struct measure_
     TRY(read_number(line, FILE_TIME_STEP, above_zero, &frames->options.time_step));
     TRY(read_number(line, Q_RANGE, 0, &request->measured.q_maximum));
     TRY(read_count(line, BINS, &request->measured.bins));
+    TRY(read_weighted(line, &request->measured.weighted));
     TRY(read_count(line, WAVES, &request->measured.waves));
     TRY(read_choice(line, VELOCITIES, mf_measured_velocities,
                     &request->measured.motion.velocities));

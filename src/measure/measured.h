@@ -19,6 +19,7 @@ struct measured_plan {
     int64_t bins;     ///< of it
     double q_maximum; ///< of S(q) [1/nm]; NAN: 4π ρ^(1/3); 0: it is not measured
     int64_t waves;    ///< of one of its bins at most; 0: 10
+    struct weighted_density_settings weighted; ///< without a cutoff it is not measured
     struct measured_motion_plan motion;
     struct measured_molecules_plan molecules; ///< all zero: nobody tells of them
     int threads;
@@ -37,6 +38,7 @@ struct measured {
         int32_t *place[3]; ///< shape [beads]
         struct frame_pairs pairs;
         struct frame_waves waves;
+        double *weighted; ///< shape [beads]
     } * slot; ///< one for each frame of a batch
     size_t slots;
     struct rdf_observed rdf; ///< with `molecules` of all pairs that they do not exclude, else of
@@ -45,6 +47,7 @@ struct measured {
     struct measured_molecules molecules;
     struct density_waves_plan waves;
     struct structure_factor factor;
+    struct weighted_density weighted;
     struct measured_motion motion;
     struct frame_features features; ///< by which it is seen where equilibrium begins
     size_t frames;
