@@ -37,8 +37,13 @@ static const char tension_unit[] = "k_B T_0/lambda^2", line_unit[] = "k_B T_0/la
 static const char density_unit[] = "1/lambda^d", pressure_unit[] = "k_B T_0/lambda^d";
 
 struct settings {
-    int64_t bins;
+    int64_t bins; ///< 0: USUAL_BINS, as of targets
 };
+
+static size_t find_bins(const struct settings *settings) {
+    enum { USUAL_BINS = 200 };
+    return settings->bins > 0 ? (size_t)settings->bins : USUAL_BINS;
+}
 
 struct state {
     size_t bins;
@@ -77,7 +82,7 @@ static enum status begin(void *state, const void *settings, const struct simulat
     struct state *s = state;
     const struct composition *composition = &simulation->setup.composition;
     const bool mixed = composition_is_mixed(composition);
-    *s = (struct state){.bins = (size_t)((const struct settings *)settings)->bins,
+    *s = (struct state){.bins = find_bins(settings),
                         .composition = *composition,
                         .box = simulation->particles.box,
                         .count = (double)simulation->particles.count,
@@ -372,13 +377,14 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
                     struct stages *stages) {
     const double pairs = mf_stages_pairs_within(setup, mf_stages_cutoff(setup));
     mf_stages_add(stages, "slab", true, (particle_cost + pair_cost * pairs) / every,
-                  "%lld bins, a list and forces of its own, one step in %.0f",
-                  (long long)((const struct settings *)settings)->bins, every);
+                  "%zu bins, a list and forces of its own, one step in %.0f", find_bins(settings),
+                  every);
 }
 
 static const struct field fields[] = {
-    {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 200, .minimum = 10,
-     .maximum = 100000, .unit = "", .help = "number of bins along the longest edge of the box"},
+    {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 0, .minimum = 0,
+     .maximum = 100000, .unit = "",
+     .help = "number of bins along the longest edge of the box; 0: 200"},
     FIELD_END,
 };
 static const char *const files[] = {"slab.tsv", NULL};

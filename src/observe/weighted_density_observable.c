@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The same of a simulation's particles, by a list of its own that is as long as the weight is.
-// Tested: test_weighted_density (unit, and physics: an ideal gas).
+// Tested: test_weighted_density (unit, cli).
 #include "base/memory.h"
 #include "observe/measure.h"
 #include "observe/weighted_density.h"

@@ -18,7 +18,7 @@ enum { LIQUID, VAPOUR, WIDTH, TENSION, TARGETS };
 static void measure(const struct simulation_setup *setup, const struct measure_plan *plan,
                     double value[TARGETS], double error[TARGETS]) {
     static struct simulation simulation;
-    const struct { int64_t bins; } settings = {200};
+    const struct { int64_t bins; } settings = {0};
     struct observable_use uses[2] = {{.observable = &mf_slab}, {NULL, NULL, NULL}};
     struct observable_values values[TARGETS];
     double temperature;
@@ -82,9 +82,51 @@ static void test_fluid_without_an_interface_gives_no_numbers(void **state) {
     fluid_clear(&fluid);
 }
 
+/// Width and densities of a start, of which later samples stand elsewhere along the longest edge.
+static void find_shifted(double shift, double value[TARGETS]) {
+    enum { SAMPLES = 20 };
+    static struct simulation simulation;
+    const struct { int64_t bins; } settings = {150};
+    const struct measure_plan plan = {.samples = SAMPLES, .every = 1};
+    struct observable_values values[TARGETS];
+    struct fluid fluid;
+    double error[TARGETS];
+    void *const state = mf_memory_zeroed(1, mf_slab.state_size);
+    fluid_lennard_jones(&fluid, 600, 0.005);
+    fluid.setup.box = (struct box){3, {7.5, 7.5, 30}};
+    fluid.setup.placement.slab = 0.47;
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_slab.begin(state, &settings, &simulation, &plan));
+    for (int k = 0; k < SAMPLES; k++) {
+        assert_ok(mf_slab.sample(state, &simulation));
+        for (size_t n = 0; n < simulation.particles.count; n++)
+            simulation.particles.position[2][n] += shift;
+        assert_true(mf_particles_wrap(&simulation.particles));
+        mf_particles_update_fractions(&simulation.particles);
+    }
+    for (int n = 0; n < TARGETS; n++)
+        values[n] = (struct observable_values){.count = 1, .value = &value[n], .error = &error[n]};
+    assert_ok(mf_pooled_result(&mf_slab, (const void *const[]){state}, 1, values));
+    mf_slab.clear(state);
+    mf_memory_free(state);
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+static void test_slab_is_followed_where_it_drifts(void **state) {
+    (void)state;
+    double still[TARGETS], moved[TARGETS];
+    find_shifted(0, still);
+    find_shifted(2.345, moved);
+    assert_true(still[LIQUID] > 0.6 && still[WIDTH] < 2);
+    for (int n = 0; n < TARGETS; n++)
+        assert_close(moved[n], still[n], 0.01 * fabs(still[n]) + 1e-9);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slab_has_the_densities_and_tension_of_the_literature),
+        cmocka_unit_test(test_slab_is_followed_where_it_drifts),
         cmocka_unit_test(test_fluid_without_an_interface_gives_no_numbers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
