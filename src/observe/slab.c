@@ -203,7 +203,7 @@ static enum status find(const struct state *s, struct found *found) {
         density[k] = mean_without(s, k, -1);
     const double length = s->box.length[s->axis];
     found->fit = mf_slab_fit(density, s->bins, length, NULL);
-    found->is_slab = mf_slab_fit_is_slab(&found->fit, s->bins, mf_box_volume(&s->box), s->count);
+    found->is_slab = mf_slab_fit_is_slab(&found->fit, length, mf_box_volume(&s->box), s->count);
     numbers_of(&found->fit, found->value);
     for (size_t b = 0; b < blocks && blocks > 1; b++) {
         double without[NUMBERS];

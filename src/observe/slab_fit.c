@@ -105,13 +105,12 @@ struct slab_fit mf_slab_fit(const double *density, size_t bins, double length,
     return fit;
 }
 
-bool mf_slab_fit_is_slab(const struct slab_fit *fit, size_t bins, double volume, double count) {
+bool mf_slab_fit_is_slab(const struct slab_fit *fit, double length, double volume, double count) {
     enum { LEAST = 2 };
     static const double deviations = 5;
     if (fit->liquid_bins < LEAST || fit->vapour_bins < LEAST)
         return false;
-    const double mean = count / volume, bin = volume / (double)bins;
-    const double variance =
-        mean / bin * (1 / (double)fit->liquid_bins + 1 / (double)fit->vapour_bins);
+    const double within = volume * 2 * fit->place / length;
+    const double variance = count / volume * (1 / within + 1 / (volume - within));
     return fit->liquid - fit->vapour > deviations * sqrt(variance);
 }

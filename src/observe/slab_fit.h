@@ -30,9 +30,9 @@ struct slab_fit mf_slab_fit(const double *density, size_t bins, double length,
 double mf_slab_fit_value(const struct slab_fit *fit, double z);
 
 /// Whether both plateaus are there, of two bins at least, and differ by more than five standard
-/// deviations of particles that lie at random in one configuration: what a fluid without an
-/// interface shows is less steep, since all that is common to its configurations, each about its
-/// own middle, is the longest wave.
+/// deviations of particles that lie at random on both sides of h in one configuration: what a fluid
+/// without an interface shows is less steep, since all that is common to its configurations, each
+/// about its own middle, is the longest wave.
 /// @param[in] volume  of the box [λ^d]
 /// Tested: test_slab_fit.
-bool mf_slab_fit_is_slab(const struct slab_fit *fit, size_t bins, double volume, double count);
+bool mf_slab_fit_is_slab(const struct slab_fit *fit, double length, double volume, double count);

@@ -30,14 +30,14 @@ static void test_slab_has_its_densities_and_width_when_its_interface_is_no_tanh(
     assert_close(fit.vapour, vapour, 1e-4);
     assert_close(fit.place, half, 5e-3);
     assert_close(fit.width, 2 * 1.2816 * deviation, 0.03 * 2 * 1.2816 * deviation);
-    assert_true(mf_slab_fit_is_slab(&fit, BINS, area * length, 1000));
+    assert_true(mf_slab_fit_is_slab(&fit, length, area * length, 1000));
     for (size_t k = 0; k < BINS; k++)
         assert_close(mf_slab_fit_value(&fit, place(k)), density[k], 0.02);
     // With a bubble in the place of the slab there are plateaus, too, and the step is negative.
     for (size_t k = 0; k < BINS; k++)
         density[k] = liquid + vapour - density[k];
     const struct slab_fit bubble = mf_slab_fit(density, BINS, length, NULL);
-    assert_false(mf_slab_fit_is_slab(&bubble, BINS, area * length, 1000));
+    assert_false(mf_slab_fit_is_slab(&bubble, length, area * length, 1000));
 }
 
 /// Whatever a fluid without an interface has, each configuration about its own middle: the longest
@@ -48,7 +48,7 @@ static void test_wave_is_no_slab(void **state) {
     for (size_t k = 0; k < BINS; k++)
         density[k] = 0.3 * (1 + 0.9 * cos(2 * M_PI * place(k) / length));
     const struct slab_fit fit = mf_slab_fit(density, BINS, length, NULL);
-    assert_false(mf_slab_fit_is_slab(&fit, BINS, area * length, 1000));
+    assert_false(mf_slab_fit_is_slab(&fit, length, area * length, 1000));
 }
 
 /// Particles at random in one configuration, or none at all: the best fit is any step of the noise.
@@ -57,7 +57,7 @@ static void test_noise_is_no_slab(void **state) {
     enum { PARTICLES = 1000, TRIALS = 100 };
     double density[BINS] = {0};
     const struct slab_fit empty = mf_slab_fit(density, BINS, length, NULL);
-    assert_false(mf_slab_fit_is_slab(&empty, BINS, area * length, 0));
+    assert_false(mf_slab_fit_is_slab(&empty, length, area * length, 0));
     for (uint32_t trial = 0; trial < TRIALS; trial++) {
         struct rng_sequence sequence = mf_rng_sequence_begin(3, RNG_PLACEMENT, trial, 0);
         for (size_t k = 0; k < BINS; k++)
@@ -65,7 +65,7 @@ static void test_noise_is_no_slab(void **state) {
         for (int n = 0; n < PARTICLES; n++)
             density[(size_t)(mf_rng_sequence_uniform(&sequence) * BINS)] += BINS / (area * length);
         const struct slab_fit fit = mf_slab_fit(density, BINS, length, NULL);
-        assert_false(mf_slab_fit_is_slab(&fit, BINS, area * length, PARTICLES));
+        assert_false(mf_slab_fit_is_slab(&fit, length, area * length, PARTICLES));
     }
 }
 
