@@ -55,10 +55,10 @@ static void test_slab_has_the_densities_and_tension_of_the_literature(void **sta
     fluid.setup.temperature = temperature;
     measure(&fluid.setup, &plan, value, error);
     for (int n = 0; n < TARGETS; n++) {
-        print_message("%s %.4f(%.4f), expected %.4f\n", mf_slab.targets[n].name, value[n], error[n],
-                      expected[n]);
         if (n == WIDTH)
             continue;
+        print_message("%s %.4f(%.4f), expected %.4f\n", mf_slab.targets[n].name, value[n], error[n],
+                      expected[n]);
         assert_true(error[n] > 0 && error[n] < largest[n]);
         assert_close(value[n], expected[n], theory[n] + deviations * error[n]);
     }
