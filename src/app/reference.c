@@ -59,14 +59,17 @@ static void markdown_titles(FILE *stream, const char *const *titles) {
     fprintf(stream, "\n");
 }
 
+/// Without the empty cells at the end, which a table needs not.
 static void markdown_row(FILE *stream, const char *const *titles, const char *const *cells) {
+    size_t last = 1; // a bar makes it a row
+    for (size_t k = 0; titles[k]; k++)
+        last = cells[k][0] && k > last ? k : last;
     fprintf(stream, "`");
     write_markdown(stream, cells[0]);
-    fprintf(stream, "` |");
-    for (size_t k = 1; titles[k]; k++) {
-        fprintf(stream, "%s", cells[k][0] ? " " : "");
+    fprintf(stream, "`");
+    for (size_t k = 1; k <= last; k++) {
+        fprintf(stream, " |%s", cells[k][0] ? " " : "");
         write_markdown(stream, cells[k]);
-        fprintf(stream, " |");
     }
     fprintf(stream, "\n");
 }

@@ -19,6 +19,7 @@ enum {
     WAVES,
     PROFILE,
     PROFILE_BINS,
+    WEIGHTED,
     WINDOW,
     ESCAPE,
     VELOCITIES,
@@ -47,6 +48,8 @@ static const struct command_option options[] = {
     [WAVES] = {"--waves", "N", "most waves in a bin of S(q); else 10"},
     [PROFILE] = {"--density-profile", "x|y|z", "density of each type along an axis"},
     [PROFILE_BINS] = {"--profile-bins", "N", "its bins; else 100"},
+    [WEIGHTED] = {"--weighted-density", "R0,RC",
+                  "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]"},
     [WINDOW] = {"--window", "T",
                 "window of MSD, VACF, escape times [ps]; else a tenth, 100 frames at most"},
     [ESCAPE] = {"--escape", "R", "distance of an escaped pair [nm]; else 1.6 density^(-1/3)"},
@@ -140,6 +143,26 @@ static enum status read_profile(const struct command_line *line, struct measured
     return read_count(line, PROFILE_BINS, &plan->profile_bins);
 }
 
+/// "R0,RC", the first below the second.
+static enum status read_weighted(const struct command_line *line,
+                                 struct weighted_density_settings *settings) {
+    enum { BINS_OF_DENSITY = 200 };
+    const char *const text = line->own[WEIGHTED];
+    char *end = NULL, *last = NULL;
+    if (text == NULL)
+        return STATUS_OK;
+    settings->bins = BINS_OF_DENSITY;
+    settings->inner_cutoff = strtod(text, &end);
+    settings->cutoff = *end == ',' ? strtod(end + 1, &last) : NAN;
+    if (end > text && last > end + 1 && *last == '\0' && settings->inner_cutoff >= 0 &&
+        settings->cutoff > settings->inner_cutoff && isfinite(settings->cutoff))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "--weighted-density takes two distances, the first below the second, as "
+                          "0.3,0.7, not \"%.60s\"",
+                          text);
+}
+
 static enum status read_request(const struct command_line *line, struct measure_request *request) {
     static const double above_zero = 1e-300;
     struct frames_plan *const frames = &request->frames;
@@ -154,6 +177,7 @@ static enum status read_request(const struct command_line *line, struct measure_
     TRY(read_number(line, FILE_TIME_STEP, above_zero, &frames->options.time_step));
     TRY(read_number(line, Q_RANGE, 0, &request->measured.q_maximum));
     TRY(read_count(line, BINS, &request->measured.bins));
+    TRY(read_weighted(line, &request->measured.weighted));
     TRY(read_count(line, WAVES, &request->measured.waves));
     TRY(read_profile(line, &request->measured));
     TRY(read_choice(line, VELOCITIES, mf_measured_velocities,

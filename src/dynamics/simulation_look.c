@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/simulation_look.h"
 
+#include <math.h>
 #include <string.h>
 
 /// All that is sorted and saved with the particles, and their molecules.
@@ -24,14 +25,16 @@ static enum status copy_particles(const struct particles *from, struct particles
     return STATUS_OK;
 }
 
-enum status mf_simulation_look(const struct simulation *simulation, struct simulation *look) {
+/// @param[in] transfer  what Σ r_a F_b of the potentials is added to, or NULL
+static enum status look_at(const struct simulation *simulation, struct transfer *transfer,
+                           struct simulation *look) {
     enum status status = STATUS_OK;
     const struct simulation_setup *setup = &simulation->setup;
     *look = (struct simulation){.setup = *setup, .law = simulation->law, .step = simulation->step};
     look->law.omega = NULL;
     look->law.friction = NULL;
     look->law.histogram = NULL;
-    look->law.transfer = NULL;
+    look->law.transfer = transfer;
     CHECK(copy_particles(&simulation->particles, &look->particles));
     CHECK(mf_neighbours_init(&look->neighbours, NEIGHBOURS_HALF, &setup->box, look->particles.count,
                              mf_simulation_range(setup), 0));
@@ -43,4 +46,27 @@ done:
     if (status != STATUS_OK)
         mf_simulation_clear(look);
     return status;
+}
+
+enum status mf_simulation_look(const struct simulation *simulation, struct simulation *look) {
+    return look_at(simulation, NULL, look);
+}
+
+enum status mf_simulation_look_virial(const struct simulation *simulation, double virial[3][3]) {
+    static const double rounding = 1e-3;
+    const double count = (double)simulation->particles.count;
+    OWNED struct transfer *transfer = NULL;
+    struct simulation look;
+    TRY_ARRAY(transfer, 1);
+    TRY(look_at(simulation, transfer, &look));
+    mf_transfer_collect(transfer, look.neighbours.parts, 1);
+    const double whole = look.sums.virial,
+                 trace = transfer->sum[0][0] + transfer->sum[1][1] + transfer->sum[2][2];
+    mf_simulation_clear(&look);
+    memcpy(virial, transfer->sum, sizeof transfer->sum);
+    if (fabs(trace - whole) > rounding * (fabs(whole) + count * simulation->setup.temperature))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "one of the \"interactions\" tells its pressure, but "
+                              "not that along each axis");
+    return STATUS_OK;
 }

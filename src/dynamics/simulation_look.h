@@ -12,3 +12,10 @@
 /// Fails: NO_MEMORY, UNSTABLE as a neighbour search. Tested: cli/test_snapshots.
 enum status mf_simulation_look(const struct simulation *simulation,
                                struct simulation *look) MUST_USE;
+
+/// Σ r_a F_b of all pairs and bonds under the potentials at the present positions [k_B T_0], of
+/// which the trace is the virial: what the pressure along each axis has beside ρ k_B T.
+/// Fails: BAD_INPUT, without a place, if an interaction adds to the virial alone; as above.
+/// Tested: test_virial.
+enum status mf_simulation_look_virial(const struct simulation *simulation,
+                                      double virial[3][3]) MUST_USE;

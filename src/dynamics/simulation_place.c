@@ -31,12 +31,12 @@ static enum status place_particles(struct simulation *simulation,
         return mf_molecules_place(molecules, particles, &setup->placement, setup->seed);
     switch ((enum placement_kind)setup->placement.kind) {
     case PLACEMENT_LATTICE:
-        mf_placement_lattice(particles, setup->placement.jitter, setup->seed);
+        TRY(mf_placement_fill(particles, &setup->placement, setup->seed));
         if (composition_is_mixed(&setup->composition))
             mf_placement_mix(particles, setup->seed);
         break;
     case PLACEMENT_RANDOM:
-        TRY(mf_placement_random(particles, setup->placement.separation, setup->seed));
+        TRY(mf_placement_fill(particles, &setup->placement, setup->seed));
         break;
     case PLACEMENT_FILE:
         for (int d = 0; d < setup->box.dimensions; d++)

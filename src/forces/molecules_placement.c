@@ -166,12 +166,9 @@ static enum status place_starts(struct starts *starts, const struct placement *p
                                 uint64_t seed) {
     struct particles *particles = &starts->particles;
     TRY_ARRAY(starts->site, particles->count);
-    if (placement->kind == PLACEMENT_RANDOM) {
-        TRY(mf_placement_random(particles, placement->separation, seed));
-    } else {
-        mf_placement_lattice(particles, placement->jitter, seed);
+    TRY(mf_placement_fill(particles, placement, seed));
+    if (placement->kind != PLACEMENT_RANDOM)
         mf_placement_mix(particles, seed);
-    }
     for (size_t k = 0; k < particles->count; k++)
         starts->site[particles->id[k]] = (uint32_t)k;
     return STATUS_OK;

@@ -301,6 +301,57 @@ enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pa
     return work.status;
 }
 
+// Weights -----------------------------------------------------------------------------------------
+
+struct weighing {
+    struct work work;
+    const struct weighted_density_settings *settings;
+    double *density;
+};
+
+static void weigh_row(void *context, size_t i, struct cells_row row) {
+    struct weighing *w = context;
+    const struct frame_pairs *pairs = w->work.pairs;
+    const bool apart = w->work.plan->molecule && !w->work.plan->within;
+    double squares[BATCH];
+    for (size_t begin = row.begin; begin < row.end; begin += BATCH) {
+        const size_t left = row.end - begin, count = left < BATCH ? left : BATCH;
+        aim(&w->work, i, begin);
+        find_squares(&w->work.probe, count, squares);
+        for (size_t k = 0; k < count; k++) {
+            const size_t j = begin + k;
+            if (squares[k] >= w->work.limit || (apart && pairs->molecule[i] == pairs->molecule[j]))
+                continue;
+            const double weight = weighted_density_weight(w->settings, squares[k]);
+            w->density[pairs->cells.order[i]] += weight;
+            w->density[pairs->cells.order[j]] += weight;
+        }
+    }
+}
+
+enum status mf_frame_pairs_weigh(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
+                                 const struct weighted_density_settings *settings,
+                                 const struct frame_box *box, int32_t *const place[3],
+                                 uint32_t (*excluded)[2], size_t count, double *density) {
+    TRY(sort(pairs, plan, settings->cutoff, box, place));
+    struct weighing w = {make_work(pairs, plan, settings->cutoff, box), settings, density};
+    const struct cells_visitor visitor = {weigh_row, &w};
+    memset(density, 0, find_beads(plan) * sizeof *density);
+    mf_cells_visit_pairs(&pairs->cells, pairs->reach, &visitor);
+    for (size_t n = 0; n < count; n++) {
+        const uint32_t i = excluded[n][0], j = excluded[n][1];
+        double squared;
+        for (int d = 0; d < 3; d++) {
+            w.work.probe.own[d] = place[d][i];
+            w.work.probe.place[d] = &place[d][j];
+        }
+        find_squares(&w.work.probe, 1, &squared);
+        density[i] -= weighted_density_weight(settings, squared);
+        density[j] -= weighted_density_weight(settings, squared);
+    }
+    return STATUS_OK;
+}
+
 enum status mf_frame_pairs_possible(const struct frame_pairs_plan *plan, double *possible) {
     enum status status = STATUS_OK;
     const struct composition *composition = &plan->composition;

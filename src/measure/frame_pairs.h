@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "measure/frame_box.h"
+#include "observe/weighted_density.h"
 #include "system/cells.h"
 #include "system/composition.h"
 
@@ -50,6 +51,15 @@ void mf_frame_pairs_exclude(struct frame_pairs *pairs, const struct frame_pairs_
 enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                                 double range, const struct frame_box *box,
                                 int32_t *const place[3]) MUST_USE;
+
+/// Find the weighted density around each bead, of the pairs that are counted as those of different
+/// molecules; or, if pairs within them are counted, of all but `excluded`.
+/// @param[out] density  shape [beads]
+/// Fails: NO_MEMORY. Tested: test_measured.
+enum status mf_frame_pairs_weigh(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
+                                 const struct weighted_density_settings *settings,
+                                 const struct frame_box *box, int32_t *const place[3],
+                                 uint32_t (*excluded)[2], size_t count, double *density) MUST_USE;
 
 /// How many pairs of each pair type there are to be counted: all but those of one molecule.
 /// @param[out] possible  shape [pair types]

@@ -166,6 +166,9 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     CHECK(plan_profile(measured));
     CHECK(mf_structure_factor_init(&measured->factor, &measured->waves, 0));
     const struct box cube = cube_of(box.volume);
+    if (plan->weighted.cutoff > 0)
+        CHECK(mf_weighted_density_init(&measured->weighted, &plan->weighted, &cube, mapping->beads,
+                                       0));
     const struct rdf_bins bins = {.width = measured->pairs.range / (double)measured->pairs.bins,
                                   .count = measured->pairs.bins};
     CHECK(mf_rdf_init_endless(&measured->rdf.counted, &bins, &cube, &measured->pairs.composition));
@@ -188,6 +191,7 @@ static void clear_slots(struct measured *measured) {
             mf_memory_free(slot->place[d]);
         mf_frame_pairs_clear(&slot->pairs);
         mf_frame_waves_clear(&slot->waves);
+        mf_memory_free(slot->weighted);
     }
     mf_memory_free(measured->slot);
     measured->slots = 0;
@@ -201,6 +205,7 @@ void mf_measured_clear(struct measured *measured) {
     mf_measured_molecules_clear(&measured->molecules);
     mf_structure_factor_clear(&measured->factor);
     mf_density_profile_clear(&measured->profile);
+    mf_weighted_density_clear(&measured->weighted);
     mf_measured_motion_clear(&measured->motion);
     mf_frame_features_clear(&measured->features);
     mf_series_clear(&measured->volume);
@@ -216,6 +221,8 @@ static enum status make_slots(struct measured *measured, size_t count) {
     for (size_t k = 0; k < count; k++)
         for (int d = 0; d < 3; d++)
             TRY_ARRAY(measured->slot[k].place[d], measured->mapping->beads);
+    for (size_t k = 0; measured->plan.weighted.cutoff > 0 && k < count; k++)
+        TRY_ARRAY(measured->slot[k].weighted, measured->mapping->beads);
     return STATUS_OK;
 }
 
@@ -242,6 +249,18 @@ static enum status find_pairs(const struct measured *measured, size_t frame,
     return STATUS_OK;
 }
 
+static enum status find_weighted(const struct measured *measured, struct measured_slot *slot) {
+    const struct weighted_density_settings *const settings = &measured->plan.weighted;
+    if (settings->cutoff == 0)
+        return STATUS_OK;
+    TRY(mf_frame_box_check_range(&slot->box, &slot->beads, settings->cutoff,
+                                 "the cutoff of the weighted density"));
+    const bool within = measured->pairs.within;
+    return mf_frame_pairs_weigh(&slot->pairs, &measured->pairs, settings, &slot->box, slot->place,
+                                within ? measured->molecules.excluded : NULL,
+                                within ? measured->molecules.excluded_count : 0, slot->weighted);
+}
+
 static enum status find_waves(const struct measured *measured, struct measured_slot *slot) {
     if (measured->plan.q_maximum == 0)
         return STATUS_OK;
@@ -265,6 +284,7 @@ static enum status look_at(void *context, size_t task, void *result) {
                                  "the range of g(r)"));
     TRY(mf_frame_box_places(&slot->box, &slot->beads, slot->place));
     TRY(find_waves(measured, slot));
+    TRY(find_weighted(measured, slot));
     return find_pairs(measured, measured->frames + task, slot);
 }
 
@@ -304,6 +324,8 @@ static enum status add_one(struct measured *measured, const struct measured_slot
     add_profile(measured, slot);
     if (slot->waves.numbers)
         mf_structure_factor_add(&measured->factor, slot->waves.numbers);
+    if (slot->weighted)
+        TRY(mf_weighted_density_add(&measured->weighted, slot->weighted, measured->mapping->beads));
     measured->frames++;
     TRY(mf_frame_features_add(&measured->features, &measured->pairs, &slot->pairs,
                               slot->box.volume));

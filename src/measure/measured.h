@@ -22,6 +22,7 @@ struct measured_plan {
     int64_t waves;        ///< of one of its bins at most; 0: 10
     int profile_axis;     ///< of the density profile
     int64_t profile_bins; ///< of it; 0: it is not measured
+    struct weighted_density_settings weighted; ///< without a cutoff it is not measured
     struct measured_motion_plan motion;
     struct measured_molecules_plan molecules; ///< all zero: nobody tells of them
     int threads;
@@ -40,7 +41,8 @@ struct measured {
         int32_t *place[3]; ///< shape [beads]
         struct frame_pairs pairs;
         struct frame_waves waves;
-    } * slot; ///< one for each frame of a batch
+        double *weighted; ///< shape [beads]
+    } * slot;             ///< one for each frame of a batch
     size_t slots;
     struct rdf_observed rdf; ///< with `molecules` of all pairs that they do not exclude, else of
                              ///< beads of different residues or molecules
@@ -50,6 +52,7 @@ struct measured {
     struct structure_factor factor;
     struct density_profile profile;
     double profile_length; ///< of the box along it, over all frames [nm]
+    struct weighted_density weighted;
     struct measured_motion motion;
     struct frame_features features; ///< by which it is seen where equilibrium begins
     size_t frames;

@@ -126,9 +126,26 @@ void mf_kirkwood_buff_write(struct json_writer *writer, const char *what,
     write_known(writer, what, "_error", name, error > 0 ? error : NAN);
 }
 
+/// κ_T = (1 + ρG)/(ρ k_B T) where the temperature is held.
+static void write_isothermal(const struct state *s, const struct observable_results *results,
+                             double integral, double error, struct json_writer *writer) {
+    const double unit_of = 1 / (s->density * results->setup->temperature);
+    const double value = (1 + s->density * integral) * unit_of;
+    const double value_error = s->density * error * unit_of;
+    if (!mf_simulation_is_thermal(results->setup) || !simulation_holds_temperature(results->setup))
+        return;
+    if (!mf_units_are_physical(results->units))
+        mf_json_put_measured(writer, "isothermal_compressibility", "lambda^d/(k_B T_0)", value,
+                             value_error);
+    if (mf_units_known(results->units) && results->setup->box.dimensions == 3) {
+        const double bar = mf_units_pressure_bar(results->units);
+        mf_json_put_measured(writer, "isothermal_compressibility_per_bar", "1", value / bar,
+                             value_error / bar);
+    }
+}
+
 static void write_summary(const void *state, const struct observable_results *results,
                           struct json_writer *writer) {
-    (void)results;
     const struct state *s = state;
     double value, error;
     for (size_t pair = 0; pair < s->pairs; pair++) {
@@ -139,6 +156,7 @@ static void write_summary(const void *state, const struct observable_results *re
     if (s->pairs == 1) {
         mf_json_put_measured(writer, "compressibility", "1", 1 + s->density * value,
                              s->density * error);
+        write_isothermal(s, results, value, error, writer);
     }
     mf_json_write_quantity(writer, "kirkwood_buff_q_maximum", "1/lambda", s->waves.q_maximum);
     mf_json_write_number(writer, "kirkwood_buff_waves", (double)s->waves.waves.waves.vectors);

@@ -8,11 +8,12 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"
 #include "observe/shear_viscosity.h"
+#include "observe/weighted_density.h"
 
 /// Of which nothing else knows.
 extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
 extern const struct observable mf_clusters, mf_local_density, mf_collisions, mf_conserved;
-extern const struct observable mf_molecule_sizes, mf_molecule_motion;
+extern const struct observable mf_molecule_sizes, mf_molecule_motion, mf_slab;
 
 #define BONDED(NAME, kind, ...) &mf_bonded_distribution_##kind,
 
@@ -37,6 +38,8 @@ const struct observable *const mf_observables[] = {
     &mf_rdf_intermolecular,
     &mf_kirkwood_buff_observable,
     &mf_conserved,
+    &mf_slab,
+    &mf_weighted_density,
     NULL,
 };
 

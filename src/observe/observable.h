@@ -24,7 +24,7 @@ struct observable_use;
 /// The script that draws all columns of the first file but errors, and what ends with _boltzmann.
 #define OBSERVABLE_FIGURE_OF_GROUPS "groups"
 
-enum { OBSERVABLES_MAX = 24, OBSERVABLE_MAX_SPANS = 80 };
+enum { OBSERVABLES_MAX = 32, OBSERVABLE_MAX_SPANS = 80 };
 
 /// Where and of what results are written.
 struct observable_results {

@@ -207,6 +207,8 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
     placement->jitter = PLACEMENT_JITTER;
     mf_json_retired(&particles, "jitter", "0.05", "it is 0.05 always; leave it out");
     mf_scene_attributes_read(scene, &particles);
+    if (placement->kind == PLACEMENT_FILE && placement->slab > 0)
+        mf_json_fault(&particles, "slab", "is for \"lattice\" and \"random\"; a file has places");
     if (particles.item == NULL)
         return STATUS_OK;
     mf_json_finish(&particles);

@@ -22,6 +22,8 @@ const struct field mf_placement_fields[] = {
      .help = "simple cubic lattice, random without overlap, or file; of molecules' first beads"},
     {"separation", FIELD_NUMBER, MEMBER(separation), .initial = 0.5, .minimum = 0,
      .maximum = DBL_MAX, .unit = "lambda", .help = "random: least distance of two particles"},
+    {"slab", FIELD_NUMBER, MEMBER(slab), .initial = 0, .minimum = 0, .maximum = 1, .unit = "",
+     .help = "lattice, random: part of the longest edge that is filled, in its middle; 0: all"},
     {"file", FIELD_FILE, MEMBER(file), .unit = "",
      .help = "columns x, y (, z), velocities, attributes by name, in the order of "
              "\"types\", then molecules, single beads last; or a JSON snapshot"},
@@ -162,6 +164,33 @@ enum status mf_placement_random(struct particles *particles, double separation, 
 done:
     mf_memory_free(occupied.first);
     mf_memory_free(occupied.link);
+    return status;
+}
+
+int mf_placement_slab_axis(const struct box *box) {
+    int longest = 0;
+    for (int d = 1; d < box->dimensions; d++)
+        longest = box->length[d] >= box->length[longest] ? d : longest;
+    return longest;
+}
+
+enum status mf_placement_fill(struct particles *particles, const struct placement *placement,
+                              uint64_t seed) {
+    const struct box box = particles->box;
+    const int axis = mf_placement_slab_axis(&box);
+    const double share = placement->slab > 0 ? placement->slab : 1;
+    enum status status = STATUS_OK;
+    particles->box.length[axis] *= share;
+    if (placement->kind == PLACEMENT_RANDOM)
+        status = mf_placement_random(particles, placement->separation, seed);
+    else
+        mf_placement_lattice(particles, placement->jitter, seed);
+    particles->box = box;
+    if (share == 1)
+        return status;
+    for (size_t k = 0; k < particles->count; k++)
+        particles->position[axis][k] += 0.5 * (1 - share) * box.length[axis];
+    mf_particles_update_fractions(particles);
     return status;
 }
 

@@ -16,6 +16,7 @@ struct placement {
     double jitter;     ///< lattice: largest shift along an axis, as a fraction of the spacing;
                        ///< of a scene PLACEMENT_JITTER
     double separation; ///< random: least distance of any two [λ]
+    double slab;       ///< lattice, random: part of the longest edge that is filled; 0: all
     int speeds;        ///< enum particles_speeds, unless the file has velocities
     char file[FIELD_TEXT_SIZE];
 };
@@ -42,6 +43,15 @@ void mf_placement_mix(struct particles *particles, uint64_t seed);
 /// Fails: BAD_INPUT when no place is found in 10,000 trials: the density is too high for it.
 enum status mf_placement_random(struct particles *particles, double separation,
                                 uint64_t seed) MUST_USE;
+
+/// The axis of the longest edge, of equal ones the last: what stands across it is a slab.
+int mf_placement_slab_axis(const struct box *box);
+
+/// On a lattice or at random, as a placement says; with a slab in that part of the box, in the
+/// middle of its longest edge, and nowhere else. Fails: as mf_placement_random.
+/// Tested: test_placement.
+enum status mf_placement_fill(struct particles *particles, const struct placement *placement,
+                              uint64_t seed) MUST_USE;
 
 /// Without order: at random, no two nearer than 0.7 of their mean distance, so that there is room
 /// for all (sequential addition fills a box up to 0.9 of it) and moves soon undo the overlaps.

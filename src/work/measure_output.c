@@ -216,6 +216,8 @@ static enum status write_summary(const struct measure_result *result) {
         write_density(result, writer);
     write_motion(result, writer);
     write_molecules(result, writer);
+    if (result->measured->plan.weighted.cutoff > 0 && !result->measured->in_vacuum)
+        mf_weighted_density_write_summary(&result->measured->weighted, writer);
     const enum status status =
         result->measured->in_vacuum ? STATUS_OK : write_kirkwood_buff(result, writer);
     if (status != STATUS_OK) {
@@ -315,6 +317,17 @@ static void write_motion_targets(const struct measure_result *result, struct jso
     write_diffusion_target(result, writer);
 }
 
+/// With the settings of its observable, in the folder's units.
+static void write_weighted(const struct measure_result *result, struct json_writer *writer) {
+    if (result->measured->plan.weighted.cutoff == 0)
+        return;
+    mf_json_begin(writer, mf_weighted_density.name);
+    mf_json_write_text(writer, "fitted", "no");
+    mf_json_write_fields(writer, mf_weighted_density_fields, &result->measured->weighted.settings);
+    mf_json_write_text(writer, "file", mf_weighted_density.files[0]);
+    mf_json_end(writer);
+}
+
 static void write_targets(const struct measure_result *result, struct json_writer *writer) {
     mf_json_begin(writer, "target");
     if (!mf_measure_output_is_alone(result))
@@ -323,6 +336,8 @@ static void write_targets(const struct measure_result *result, struct json_write
         write_groups(result, writer);
     if (!mf_measure_output_is_alone(result))
         write_motion_targets(result, writer);
+    if (!mf_measure_output_is_alone(result))
+        write_weighted(result, writer);
     mf_json_end(writer);
 }
 
@@ -351,6 +366,12 @@ static enum status write_used(const struct measure_result *result) {
         mf_json_begin(writer, "density_profile");
         mf_json_write_text(writer, "axis", mf_density_profile_axes[plan->profile_axis]);
         mf_json_write_integer(writer, "bins", plan->profile_bins);
+        mf_json_end(writer);
+    }
+    if (plan->weighted.cutoff > 0) {
+        mf_json_begin(writer, mf_weighted_density.name);
+        mf_json_write_fields(writer, mf_weighted_density_fields,
+                             &result->measured->weighted.settings);
         mf_json_end(writer);
     }
     return write_json(result, "used.json", writer);

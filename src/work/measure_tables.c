@@ -67,6 +67,8 @@ enum status mf_measure_tables_write(const struct measure_result *result) {
     if (!result->measured->in_vacuum)
         TRY(mf_rdf_observable.write(&result->measured->rdf, &results));
     TRY(write_molecules(result, &results));
+    if (!result->measured->in_vacuum && result->measured->plan.weighted.cutoff > 0)
+        TRY(mf_weighted_density_write(&result->measured->weighted, &results));
     if (!result->measured->in_vacuum && mf_structure_factor_blocks(&result->measured->factor) > 0)
         TRY(mf_structure_factor_write(&result->measured->factor, &results));
     if (result->measured->profile_length > 0)

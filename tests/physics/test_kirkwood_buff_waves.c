@@ -2,6 +2,7 @@
 //
 // Kirkwood and Buff's integrals of soft beads, by an equation of state and by the random phase
 // approximation.
+#include "base/statistics.h"
 #include "curves/formula.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
@@ -55,6 +56,67 @@ static void test_compressibility_of_soft_beads_is_that_of_their_equation_of_stat
     fluid_clear(&fluid);
 }
 
+/// Pressure of soft beads at a density.
+static double find_pressure(double density, double *error) {
+    const struct measure_plan plan = {.equilibration = 400, .samples = 300, .every = 10};
+    static struct simulation simulation;
+    struct fluid fluid;
+    struct running_mean mean = {0};
+    double temperature;
+    fluid_groot_warren(&fluid, PARTICLES, 0.03);
+    for (int d = 0; d < 3; d++)
+        fluid.setup.box.length[d] = cbrt(PARTICLES / density);
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
+    for (int k = 0; k < plan.samples; k++) {
+        assert_ok(mf_simulation_run(&simulation, (uint64_t)plan.every - 1));
+        simulation.wants = PAIR_FORCES_AND_SUMS;
+        assert_ok(mf_simulation_run(&simulation, 1));
+        mf_statistics_add(&mean, mf_simulation_pressure(&simulation));
+    }
+    *error = 2 * mf_statistics_standard_error(&mean); // of a memory of a few samples
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+    return mean.mean;
+}
+
+/// (∂P/∂ρ)_T of runs beside it is k_B T/S(0), without any equation of state.
+static void test_compressibility_of_one_run_is_that_of_two_pressures(void **state) {
+    (void)state;
+    static const double step = 0.2;
+    struct fluid fluid;
+    double value[MAX_PAIRS] = {0}, error[MAX_PAIRS] = {0}, errors[2];
+    fluid_groot_warren(&fluid, PARTICLES, 0.03);
+    fluid.setup.composition = mf_composition_of_one(PARTICLES);
+    measure(&fluid.setup, value, error);
+    const double slope =
+        (find_pressure(3 + step, &errors[0]) - find_pressure(3 - step, &errors[1])) / (2 * step);
+    const double slope_error = hypot(errors[0], errors[1]) / (2 * step);
+    const double found = 1 + 3 * value[0], product = found * slope;
+    const double product_error = hypot(3 * error[0] * slope, found * slope_error);
+    print_message("S(0) = %.4f(%.4f), dP/drho = %.3f(%.3f), product %.3f(%.3f)\n", found,
+                  3 * error[0], slope, slope_error, product, product_error);
+    assert_true(product_error < 0.08);
+    assert_close(product, 1, 0.02 + deviations * product_error);
+    fluid_clear(&fluid);
+}
+
+/// Points that know nothing of each other have S = 1 at every wave.
+static void test_compressibility_of_an_ideal_gas_is_one(void **state) {
+    (void)state;
+    struct fluid fluid;
+    double value[MAX_PAIRS] = {0}, error[MAX_PAIRS] = {0};
+    fluid_ideal_gas(&fluid, 3, 500, 0.1);
+    fluid.setup.composition = mf_composition_of_one(500);
+    const double density = 500 / mf_box_volume(&fluid.setup.box);
+    measure(&fluid.setup, value, error);
+    print_message("S(0) = %.4f(%.4f) of an ideal gas\n", 1 + density * value[0],
+                  density * error[0]);
+    assert_true(density * error[0] < 0.1);
+    assert_close(density * value[0], 0, deviations * density * error[0]);
+    fluid_clear(&fluid);
+}
+
 /// Weak repulsion at density 3: c = −Φ/k_B T, so that 1/S = 1 + ρ_a (u ± u_AB) for all beads and
 /// for the composition, u = π a/15. At a = 2 the approximation is off by a few per cent of S − 1;
 /// at a = 25 it takes the composition's for twice as large as it is.
@@ -99,6 +161,8 @@ static void test_integrals_of_weak_beads_are_those_of_the_random_phase_approxima
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_compressibility_of_soft_beads_is_that_of_their_equation_of_state),
+        cmocka_unit_test(test_compressibility_of_one_run_is_that_of_two_pressures),
+        cmocka_unit_test(test_compressibility_of_an_ideal_gas_is_one),
         cmocka_unit_test(test_integrals_of_weak_beads_are_those_of_the_random_phase_approximation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -130,6 +130,46 @@ static void test_frame_pairs_are_all_when_the_box_has_any_shape(void **state) {
             check_counts(make_system(boxes[b], &one, shares[n], 10 * b + n));
 }
 
+/// Weights of all pairs but those of one molecule, or, counted apart, but the excluded ones.
+static void check_weights(struct system *s, bool within) {
+    static uint32_t excluded[][2] = {{3, 4}, {40, 90}, {7, 11}};
+    enum { EXCLUDED = sizeof excluded / sizeof *excluded };
+    const double range = s->plan.range;
+    const struct weighted_density_settings settings = {0.5 * range, range, 10, 0};
+    struct frame_pairs pairs = {.counts = NULL};
+    double found[MAX_BEADS], expected[MAX_BEADS] = {0};
+    s->plan.molecule = s->molecule;
+    s->plan.within = within;
+    for (size_t k = 0; k < s->frame.atoms; k++)
+        s->molecule[k] = (uint32_t)(k / 4);
+    for (size_t i = 0; i < s->frame.atoms; i++)
+        for (size_t j = 0; j < i; j++) {
+            const double x = fmax(0, (pow(find_distance(s, i, j) / range, 2) - 0.25) / 0.75);
+            const double weight = x < 1 ? (1 - x) * (1 - x) * (1 + 2 * x) : 0;
+            bool counts = within || i / 4 != j / 4;
+            for (int n = 0; within && n < EXCLUDED; n++)
+                counts = counts && !(j == excluded[n][0] && i == excluded[n][1]);
+            expected[i] += counts ? weight : 0;
+            expected[j] += counts ? weight : 0;
+        }
+    assert_ok(mf_frame_pairs_weigh(&pairs, &s->plan, &settings, &s->box, s->place,
+                                   within ? excluded : NULL, within ? EXCLUDED : 0, found));
+    for (size_t k = 0; k < s->frame.atoms; k++)
+        assert_close(found[k], expected[k], 1e-6);
+    mf_frame_pairs_clear(&pairs);
+    free(s);
+}
+
+static void test_weighted_densities_are_those_of_all_pairs(void **state) {
+    (void)state;
+    const struct composition one = mf_composition_of_one(120);
+    for (uint32_t b = 0; b < BOXES; b++)
+        for (int within = 0; within < 2; within++) {
+            check_weights(make_system(boxes[b], &one, 0.2, 300 + b), within);
+            check_weights(make_system(boxes[b], &one, 0.5, 400 + b), within);
+        }
+}
+
 static void test_frame_pairs_are_of_their_types_when_beads_differ(void **state) {
     (void)state;
     const struct composition three = {.types = 3, .count = {80, 20, 41}};
@@ -255,6 +295,7 @@ static void test_frame_box_is_refused_when_it_is_none_or_too_small(void **state)
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_frame_pairs_are_all_when_the_box_has_any_shape),
+        cmocka_unit_test(test_weighted_densities_are_those_of_all_pairs),
         cmocka_unit_test(test_frame_pairs_are_of_their_types_when_beads_differ),
         cmocka_unit_test(test_frame_pairs_leave_molecules_out_when_asked),
         cmocka_unit_test(test_frame_pairs_see_each_other_when_a_corner_is_between),

@@ -193,6 +193,42 @@ static void test_placement_random_fails_when_the_density_is_too_high(void **stat
     mf_particles_clear(&particles);
 }
 
+/// A third of the longest edge, in its middle, with the separation kept.
+static void check_slab(enum placement_kind kind, const struct box *box, int axis) {
+    enum { COUNT = 120 };
+    const struct placement placement = {
+        .count = COUNT, .kind = kind, .jitter = 0, .separation = 0.5, .slab = 1.0 / 3};
+    const double length = box->length[axis];
+    struct particles particles;
+    double low = length, high = 0, mean = 0;
+    assert_ok(mf_particles_init(&particles, box, COUNT));
+    assert_ok(mf_placement_fill(&particles, &placement, 9));
+    check_in_box(&particles);
+    assert_true(min_distance(&particles) >= 0.5);
+    for (size_t k = 0; k < COUNT; k++) {
+        const double x = particles.position[axis][k];
+        low = fmin(low, x);
+        high = fmax(high, x);
+        mean += x / COUNT;
+        assert_int_equal(particles.fraction[axis][k], box_fraction(x, 1 / length));
+    }
+    assert_true(low >= length / 3 && low < 0.45 * length);
+    assert_true(high <= length * 2 / 3 && high > 0.55 * length);
+    assert_true(fabs(mean - length / 2) < 0.05 * length);
+    assert_identical(particles.box.length[axis], length);
+    mf_particles_clear(&particles);
+}
+
+static void test_placement_slab_fills_the_middle_of_the_longest_edge(void **state) {
+    (void)state;
+    for (int kind = PLACEMENT_LATTICE; kind <= PLACEMENT_RANDOM; kind++) {
+        check_slab((enum placement_kind)kind, &(struct box){3, {5, 5, 18}}, 2);
+        check_slab((enum placement_kind)kind, &(struct box){3, {5, 18, 5}}, 1);
+        check_slab((enum placement_kind)kind, &(struct box){3, {9, 9, 9}}, 2);
+        check_slab((enum placement_kind)kind, &(struct box){2, {36, 12, 1}}, 0);
+    }
+}
+
 /// Order shows in S(q) = |Σ exp(iqx)|²/N at the waves of a lattice's planes; without it S is below
 /// 1, but for chance 12 = −ln(6e-6) of points at random.
 static void test_placement_disordered_has_no_planes_when_the_count_is_a_cube(void **state) {
@@ -227,6 +263,7 @@ int main(void) {
         cmocka_unit_test(test_placement_random_keeps_the_separation_when_there_is_room),
         cmocka_unit_test(test_placement_random_is_uniform_when_there_is_no_separation),
         cmocka_unit_test(test_placement_disordered_has_no_planes_when_the_count_is_a_cube),
+        cmocka_unit_test(test_placement_slab_fills_the_middle_of_the_longest_edge),
         cmocka_unit_test(test_placement_random_fails_when_the_density_is_too_high),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

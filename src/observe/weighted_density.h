@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file How dense it is around each particle: the distribution p(ρ) of
+///
+///   ρ_i = Σ_{j≠i} w(r_ij),   w = 1 for r < r_0, 1 − 3x² + 2x³ with x = (r² − r_0²)/(r_c² − r_0²)
+///   up to r_c, 0 beyond
+///
+/// (T. Sanyal and M. S. Shell, J. Chem. Phys. 145, 034109 (2016)), a number of neighbours, on which
+/// the energy of many-body potentials depends. It is of all pairs that interact: those that
+/// molecules exclude are left out. Of an ideal gas the mean is ρ ∫w dV and the variance ρ ∫w² dV.
+#pragma once
+
+#include "observe/observable.h"
+#include "observe/sample_blocks.h"
+#include "observe/sample_series.h"
+
+struct weighted_density_settings {
+    double inner_cutoff, cutoff; ///< r_0 and r_c [λ]
+    int64_t bins;
+    double maximum; ///< of the bins; 0: chosen
+};
+
+extern const struct field mf_weighted_density_fields[];
+extern const struct observable mf_weighted_density;
+
+/// w of a squared distance.
+static inline double weighted_density_weight(const struct weighted_density_settings *settings,
+                                             double squared) {
+    const double inner = settings->inner_cutoff * settings->inner_cutoff;
+    const double outer = settings->cutoff * settings->cutoff;
+    const double x = fmin(1, fmax(0, (squared - inner) / (outer - inner)));
+    return 1 - x * x * (3 - 2 * x);
+}
+
+/// What is counted of many configurations. All zero is none.
+struct weighted_density {
+    struct weighted_density_settings settings; ///< with the maximum that was chosen
+    struct sample_series series; ///< of each sample: the means of ρ and ρ², the share beyond
+    struct sample_blocks blocks;
+    double *sums; ///< shape [blocks, bins]: share of the particles, over the samples of a block
+};
+
+/// Prepare for `planned` samples, 0: as many as there will be, of `count` particles in a box, whose
+/// ideal gas chooses the largest ρ of the bins: four times its mean and standard deviation, where
+/// even a liquid beside its vapour has its place. Must be cleared, also after a failure.
+/// Fails: BAD_INPUT if r_0 is not below r_c; NO_MEMORY.
+enum status mf_weighted_density_init(struct weighted_density *density,
+                                     const struct weighted_density_settings *settings,
+                                     const struct box *box, size_t count, size_t planned) MUST_USE;
+void mf_weighted_density_clear(struct weighted_density *density);
+
+/// Add a configuration. @param[in] values  shape [count]: ρ_i
+/// Fails: NO_MEMORY. Tested: test_weighted_density.
+enum status mf_weighted_density_add(struct weighted_density *density, const double *values,
+                                    size_t count) MUST_USE;
+
+struct weighted_density_summary {
+    double mean, mean_error, variance, variance_error;
+    double beyond; ///< share of the particles with a ρ above the bins'
+};
+struct weighted_density_summary mf_weighted_density_result(const struct weighted_density *density);
+
+/// p at some ρ, on the line between the middles of bins, and its error; NaN beyond the bins.
+double mf_weighted_density_at(const struct weighted_density *density, double value, double *error);
+
+/// weighted_density.tsv: ρ, p(ρ) with ∫ p dρ = 1, its error. Fails: IO, NO_MEMORY.
+enum status mf_weighted_density_write(const struct weighted_density *density,
+                                      const struct observable_results *results) MUST_USE;
+
+/// The numbers of a summary.
+void mf_weighted_density_write_summary(const struct weighted_density *density,
+                                       struct json_writer *writer);
