@@ -8,10 +8,9 @@ enum { ENGINE, BANDS, PROJECT, TO };
 static const struct command_option options[] = {
     [ENGINE] = {"--engine", "lammps|hoomd|espresso|openmm|gromacs|dl_poly|votca",
                 "program that will run the result"},
-    [BANDS] = {"--bands", NULL, "also the potential minus and plus one standard error"},
-    [PROJECT] = {"--project", NULL,
-                 "the nearest friction that the engine has; the deviation is simulated"},
-    [TO] = {"-o", "DIR", "folder for its files (default: the engine's name, here)"},
+    [BANDS] = {"--bands", NULL, "also the potential -+ one standard error"},
+    [PROJECT] = {"--project", NULL, "the nearest friction of the engine; its cost is simulated"},
+    [TO] = {"-o", "DIR", "folder (the engine's name)"},
     {NULL, NULL, NULL},
 };
 
