@@ -6,6 +6,7 @@
 #include "app/reference.h"
 #include "app/schema.h"
 #include "base/nearest.h"
+#include "defaults/fit_friction.h"
 #include "defaults/fit_file.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
@@ -18,7 +19,7 @@ enum { FORMAT };
 
 static const struct command_option options[] = {
     [FORMAT] = {"--format", "man|markdown|bash|schema",
-                "the whole reference: a man page, Markdown, the completions of bash, JSON Schema"},
+                "the reference as man page, Markdown, bash completions, JSON Schema"},
     {NULL, NULL, NULL},
 };
 
@@ -141,11 +142,13 @@ static const struct {
 };
 
 static const struct topic fixed_topics[] = {
-    {"files", "run", "the top of a run file, for `mesofit fit`", {mf_heading_fields}},
+    {"files",
+     "run",
+     "the top of a run file, for `mesofit fit`",
+     {mf_heading_fields, mf_fit_friction_fields}},
     {"files",
      "scene",
-     "the top of a scene file, for `mesofit simulate`, and \"scene\" of a run file (without title "
-     "and seed)",
+     "the top of a scene file, and \"scene\" of a run file (without title and seed)",
      {mf_heading_fields, mf_scene_fields, mf_scene_density_fields}},
     {"files",
      "particles",

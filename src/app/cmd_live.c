@@ -11,7 +11,7 @@ enum { START, STAY, PORT };
 
 static const struct command_option options[] = {
     [START] = {"--start", NULL, "start at once, not from the page"},
-    [STAY] = {"--stay", NULL, "keep serving after the end of the run"},
+    [STAY] = {"--stay", NULL, "keep serving after the run"},
     [PORT] = {"--port", "N", "port of 127.0.0.1; else any free one"},
     {NULL, NULL, NULL},
 };

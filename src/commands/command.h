@@ -25,7 +25,7 @@ struct command_option {
 
 /// What --live takes, of commands that run something.
 #define COMMAND_LIVE_OPTION                                                                        \
-    { "--live", "[=PORT]", "show the run in a browser; the address is printed" }
+    { "--live", "[=PORT]", "show the run in a browser" }
 
 /// Run a scene or run file beside a page.
 /// @param[in] port  the option's value, or its name: any port

@@ -12,18 +12,19 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, LIVE };
+enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, FRICTION, LIVE };
 
 /// Of --explain.
 enum { MAX_RANKS = 100000 };
 
 static const struct command_option options[] = {
-    [EXPLAIN] = {"--explain", NULL, "print what will be done and what a step costs; run nothing"},
-    [RANKS] = {"--ranks", "N", "with --explain: speed-up of N processes of an MPI job"},
-    [TARGET] = {"--target", "DIR", "folder of target.json; with the next two rdf.tsv is enough"},
-    [DENSITY] = {"--density", "NUMBER", "number density of the beads, without target.json"},
-    [TEMPERATURE] = {"--temperature", "NUMBER",
-                     "temperature of the target, without target.json; else 1"},
+    [EXPLAIN] = {"--explain", NULL, "print what would be done and its cost"},
+    [RANKS] = {"--ranks", "N", "with --explain: speed-up of N MPI processes"},
+    [TARGET] = {"--target", "DIR", "folder of target.json, or with the next two rdf.tsv"},
+    [DENSITY] = {"--density", "NUMBER", "number density, without target.json"},
+    [TEMPERATURE] = {"--temperature", "NUMBER", "temperature, without target.json; else 1"},
+    [FRICTION] = {"--friction", "free|exportable|linear",
+                  "omega: any, one that LAMMPS runs, or HOOMD and ESPResSo too"},
     [LIVE] = COMMAND_LIVE_OPTION,
     {NULL, NULL, NULL},
 };
@@ -51,7 +52,7 @@ static enum status parse_positive(const char *option, const char *text, double *
     return STATUS_OK;
 }
 
-static enum status run_file(const char *file, const struct command_line *line) {
+static enum status run_whole(const char *file, const struct command_line *line) {
     double ranks = 0;
     if (line->own[RANKS] && !line->own[EXPLAIN])
         return mf_status_fail(
@@ -64,6 +65,27 @@ static enum status run_file(const char *file, const struct command_line *line) {
                               MAX_RANKS);
     return line->own[EXPLAIN] ? mf_fit_explain(file, &line->options, (int)ranks)
                               : run_shared(file, line);
+}
+
+/// The file with what the command line puts into it.
+static enum status run_with(const char *file, const char *text, const struct command_line *line,
+                            enum status (*run_it)(const char *, const struct command_line *)) {
+    const struct memory_file memory_files = {file, text};
+    mf_text_file_set_memory_files(&memory_files, 1);
+    const enum status status = run_it(file, line);
+    mf_text_file_set_memory_files(NULL, 0);
+    return status;
+}
+
+static enum status run_file(const char *file, const struct command_line *line) {
+    const struct json_filling friction = {.key = "friction", .text = line->own[FRICTION]};
+    char *text;
+    if (friction.text == NULL)
+        return run_whole(file, line);
+    TRY(mf_json_fill(file, NULL, &friction, 1, &text));
+    const enum status status = run_with(file, text, line, run_whole);
+    mf_memory_free(text);
+    return status;
 }
 
 /// A run file that nobody wrote: g(r) of the folder, density and temperature.
@@ -84,11 +106,7 @@ static enum status run_rdf(const char *file, const char *rdf, const struct comma
              "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}, "
              "\"scene\": {\"density\": %.17g, \"temperature\": %.17g}}",
              density, temperature);
-    const struct memory_file memory_files = {file, text};
-    mf_text_file_set_memory_files(&memory_files, 1);
-    const enum status status = run_file(file, line);
-    mf_text_file_set_memory_files(NULL, 0);
-    return status;
+    return run_with(file, text, line, run_file);
 }
 
 /// The folder's target.json with what the command line says and the file does not.
@@ -105,10 +123,7 @@ static enum status run_filled(const char *file, const struct command_line *line)
         TRY(parse_positive("--temperature", line->own[TEMPERATURE], &filling[count++].value));
     }
     TRY(mf_json_fill(file, "scene", filling, count, &text));
-    const struct memory_file memory_files = {file, text};
-    mf_text_file_set_memory_files(&memory_files, 1);
-    const enum status status = run_file(file, line);
-    mf_text_file_set_memory_files(NULL, 0);
+    const enum status status = run_with(file, text, line, run_file);
     mf_memory_free(text);
     return status;
 }

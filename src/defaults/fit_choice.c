@@ -70,6 +70,14 @@ enum status mf_fit_choice_give_text(const struct json_object *root, const char *
     return insert(writer, root);
 }
 
+enum status mf_fit_choice_give_number(const struct json_object *root, const char *path,
+                                      const char *key, double value) {
+    struct json_writer *writer = writer_at(path, NULL);
+    if (writer)
+        mf_json_write_number(writer, key, value);
+    return insert(writer, root);
+}
+
 enum status mf_fit_choice_give(const struct fit_choice *choice, const char *path,
                                const struct field *fields, const char *key, double value) {
     struct json_writer *writer = writer_at(path, &choice->read->scene.units);

@@ -43,10 +43,13 @@ const char *mf_fit_choice_text(const struct fit_choice *choice, const char *unit
 bool mf_fit_choice_lacks(const struct json_object *root, const char *path, const char *key);
 struct json_object mf_fit_choice_object(const struct json_object *root, const char *path);
 
-/// Put in a text; a number or whole number of a field table in its type and the units of the file;
-/// the friction weight σ (1 − r/cutoff); an object without members. Fails: NO_MEMORY.
+/// Put in a text; a number without a unit; a number or whole number of a field table in its type
+/// and the units of the file; the friction weight σ (1 − r/cutoff); an object without members.
+/// Fails: NO_MEMORY.
 enum status mf_fit_choice_give_text(const struct json_object *root, const char *path,
                                     const char *key, const char *text) MUST_USE;
+enum status mf_fit_choice_give_number(const struct json_object *root, const char *path,
+                                      const char *key, double value) MUST_USE;
 enum status mf_fit_choice_give(const struct fit_choice *choice, const char *path,
                                const struct field *fields, const char *key, double value) MUST_USE;
 enum status mf_fit_choice_give_omega(const struct fit_choice *choice, const char *path,
@@ -61,6 +64,13 @@ double mf_fit_defaults_stiff_step(const struct fit_choice *choice);
 /// [k_B T_0/λ²] is wrong by the allowed share [τ].
 double mf_fit_defaults_relaxing_step(const struct fit_choice *choice, double curvature,
                                      double allowed);
+
+/// σ of ω = σ (1 − r/cutoff) with which a bead loses its velocity in the time in which it would
+/// reach its neighbours [sqrt(μ/τ)].
+double mf_fit_defaults_sigma(const struct fit_choice *choice, double cutoff);
+
+/// ω, if it is to be found, up to the end of the second shell and to several times that friction.
+enum status mf_fit_defaults_omega(struct fit_choice *choice) MUST_USE;
 
 /// How exactly g is to be known: as the target is.
 double mf_fit_defaults_precision(const struct fit_choice *choice);

@@ -2,6 +2,7 @@
 #include "defaults/fit_defaults.h"
 
 #include "defaults/fit_choice.h"
+#include "defaults/fit_friction.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -275,43 +276,9 @@ static enum status choose_unknowns(struct fit_choice *c) {
     mf_fit_choice_note(
         c, "unknowns: the potential and, since targets that move are to be fitted, omega");
     TRY(mf_fit_choice_give_empty(c->root, "unknowns.potential"));
-    return mf_fit_choice_give_empty(c->root, "unknowns.omega");
-}
-
-/// σ of ω = σ (1 − r/cutoff) with which a bead loses its velocity in the time in which it would
-/// reach its neighbours. In a gas collisions are rare, and no pair may lose more than a tenth of
-/// its velocity a step.
-static double moderate_friction(const struct fit_choice *c, double cutoff) {
-    static const double strongest = 0.1;
-    const double rate = mf_fit_scales_friction(c->rdf, cutoff) / c->mass;
-    return sqrt(fmin(1 / (rate * c->crossing), strongest * c->mass / c->time_step));
-}
-
-/// ω as a spline from where pairs begin to the end of the second shell, up to several times the
-/// friction that would be chosen of its own.
-static enum status choose_omega(struct fit_choice *c) {
-    static const char *const path = "unknowns.omega";
-    static const double shells = 2, beyond_etd = 1.3, max = 6;
-    enum { COEFFICIENTS = 8 };
-    if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
-        !mf_fit_choice_lacks(c->root, path, "maximum"))
-        return STATUS_OK;
-    const double cutoff =
-        fmin(c->range, fmax(shells * c->scales.shell,
-                            beyond_etd * target_files_etd(&c->read->files)->grid.r_maximum));
-    const double sigma = moderate_friction(c, cutoff);
-    char largest[FIT_CHOICE_TEXT_SIZE], from[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
-    mf_fit_choice_note(c, "omega: %d coefficients from 0 to %s, between r = %s and %s, %s",
-                       COEFFICIENTS, mf_fit_choice_text(c, "sqrt(mu/tau)", max * sigma, largest),
-                       mf_fit_choice_text(c, "lambda", c->scales.core, from),
-                       mf_fit_choice_text(c, "lambda", cutoff, to),
-                       "about the end of the second shell");
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "cutoff", cutoff));
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "inner_cutoff", c->scales.core));
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", max * sigma));
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "coefficients", COEFFICIENTS));
-    TRY(mf_fit_choice_give_text(c->root, path, "curve", "bspline"));
-    return mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma, cutoff);
+    TRY(mf_fit_choice_give_empty(c->root, "unknowns.omega"));
+    bool changed;
+    return mf_fit_friction_put(c->root, &changed);
 }
 
 /// Friction of any kind, along or across pairs.
@@ -326,7 +293,7 @@ static bool finds_friction(const struct fit_choice *c) {
 static enum status choose_friction(struct fit_choice *c) {
     if (finds_friction(c) || !lacks_friction(c->root))
         return STATUS_OK;
-    const double cutoff = c->scales.shell, sigma = moderate_friction(c, cutoff);
+    const double cutoff = c->scales.shell, sigma = mf_fit_defaults_sigma(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
     char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
     mf_fit_choice_note(
@@ -345,7 +312,7 @@ static enum status choose_all(struct fit_choice *c) {
         choose_cutoff,
         choose_count,
         choose_time_step,
-        choose_omega,
+        mf_fit_defaults_omega,
         choose_friction,
         mf_fit_defaults_method,
         mf_fit_defaults_verification,

@@ -7,6 +7,7 @@
 #include "defaults/fit_base.h"
 #include "defaults/fit_check.h"
 #include "defaults/fit_defaults.h"
+#include "defaults/fit_friction.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
 
@@ -140,7 +141,9 @@ static enum status read_scene(struct fit_file *fit, struct json_object *root, bo
 /// @param[in] chosen  what may be left to the program has been put in
 static enum status read_root(struct fit_file *fit, struct json_object *root,
                              const struct fit_file *leader, bool chosen) {
+    int friction; // what it means is put into the document
     mf_json_fields(root, mf_heading_fields, &fit->heading);
+    mf_json_fields(root, mf_fit_friction_fields, &friction);
     struct json_object scene = mf_json_child(root, "scene", false);
     mf_units_read_document(root, &scene);
     if (leader && mf_units_are_physical(&leader->scene.units))
@@ -273,6 +276,15 @@ static enum status write_constraints(struct fit_file *fit, const struct reading 
     return read_again(fit, reading, false);
 }
 
+/// The family of ω.
+static enum status write_friction(struct fit_file *fit, const struct reading *reading,
+                                  bool chosen) {
+    struct json_object root = mf_json_root(reading->document);
+    bool changed;
+    TRY(mf_fit_friction_put(&root, &changed));
+    return changed ? read_again(fit, reading, chosen) : STATUS_OK;
+}
+
 static enum status read_state(struct fit_file *fit, struct reading *reading) {
     struct json_document *document = reading->document;
     TRY(mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states));
@@ -282,6 +294,8 @@ static enum status read_state(struct fit_file *fit, struct reading *reading) {
     TRY(read_whole(fit, reading, !chooses));
     if (mf_json_fault_count(document) == 0)
         TRY(write_constraints(fit, reading));
+    if (mf_json_fault_count(document) == 0)
+        TRY(write_friction(fit, reading, !chooses));
     if (!chooses || mf_json_fault_count(document) > 0)
         return STATUS_OK;
     TRY(mf_fit_defaults_choose(fit, reading->leader, &root, &fit->choices));

@@ -11,7 +11,7 @@
 
 static enum status add(const char *file, cJSON *root, const char *object,
                        const struct json_filling *filling) {
-    cJSON *place = cJSON_GetObjectItemCaseSensitive(root, object);
+    cJSON *place = object ? cJSON_GetObjectItemCaseSensitive(root, object) : root;
     if (place == NULL)
         place = cJSON_AddObjectToObject(root, object);
     if (place == NULL)
@@ -19,10 +19,12 @@ static enum status add(const char *file, cJSON *root, const char *object,
     if (!cJSON_IsObject(place)) // its reader says what should stand there
         return STATUS_OK;
     if (cJSON_GetObjectItemCaseSensitive(place, filling->key))
-        return mf_status_fail(STATUS_BAD_INPUT, "--%s: %s has %s.%s", filling->key, file, object,
-                              filling->key);
-    return cJSON_AddNumberToObject(place, filling->key, filling->value) ? STATUS_OK
-                                                                        : STATUS_NO_MEMORY;
+        return mf_status_fail(STATUS_BAD_INPUT, "--%s: %s has %s%s%s", filling->key, file,
+                              object ? object : "", object ? "." : "", filling->key);
+    const cJSON *added = filling->text
+                             ? cJSON_AddStringToObject(place, filling->key, filling->text)
+                             : cJSON_AddNumberToObject(place, filling->key, filling->value);
+    return added ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 enum status mf_json_fill(const char *file, const char *object, const struct json_filling *filling,

@@ -52,6 +52,12 @@ static void print_parameters(struct progress *to, const struct fit_file *fit,
                            mark);
     }
     mf_progress_print(to, "%s", line);
+    if (p->fixed[INVERSE_INNER_CUTOFF] == 0)
+        mf_progress_print(to, p->fixed[INVERSE_EXPONENT] == 1
+                                  ? "other engines run this omega as it is: LAMMPS (dpd/tstat), "
+                                    "HOOMD-blue, ESPResSo, OpenMM"
+                                  : "LAMMPS runs this omega as it is: dpd/ext/tstat of its package "
+                                    "DPD-BASIC");
 }
 
 /// "dissipative.sigma = 3.02(4)"; what is no result does not look like one.

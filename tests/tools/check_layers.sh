@@ -53,7 +53,7 @@ faults=$(
     only_in src/live/live_server.c 'include.*microhttpd\.h' 'libmicrohttpd'
     only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'
     only_in src/report/figure_script.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
-    only_in src/bench/bench_lammps.c '"([^" ]*/)?lmp[" ]' 'LAMMPS'
+    only_in 'src/\(bench/bench_lammps\|export/export_lammps\).c' '"([^" ]*/)?lmp[" ]' 'LAMMPS'
     only_in src/report/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
     only_in src/base/clock.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
