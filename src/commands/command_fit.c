@@ -18,7 +18,7 @@ enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, LIVE };
 enum { MAX_RANKS = 100000 };
 
 static const struct command_option options[] = {
-    [EXPLAIN] = {"--explain", NULL, "print what will be done and what a step costs; run nothing"},
+    [EXPLAIN] = {"--explain", NULL, "print what will be done and what it costs; run nothing"},
     [RANKS] = {"--ranks", "N", "with --explain: speed-up of N processes of an MPI job"},
     [TARGET] = {"--target", "DIR", "folder of target.json; with the next two rdf.tsv is enough"},
     [DENSITY] = {"--density", "NUMBER", "number density of the beads, without target.json"},
