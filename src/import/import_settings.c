@@ -126,9 +126,12 @@ static enum status read_interactions(struct import_settings *settings,
     }
     if (settings->pairs > 0)
         return STATUS_OK;
-    return mf_xml_fail(
-        &settings->document, root, "no <non-bonded> has a target, <inverse><target>%s",
-        mf_xml_find(root, "non-bonded.fmatch") ? ": force matching is not here" : "");
+    return mf_xml_fail(&settings->document, root,
+                       "no <non-bonded> has a target, <inverse><target>%s",
+                       mf_xml_find(root, "non-bonded.fmatch") ? ": force matching is not here"
+                       : mf_xml_find(root, "inverse")
+                           ? ""
+                           : ": what csg_stat does by these, mesofit measure does by itself");
 }
 
 /// With five digits: k_B T of 300 K has been written as 2.4942, 2.49435 and 2.494338785.
