@@ -28,7 +28,7 @@ MAKEFLAGS += --no-print-directory
 
 BUILD   ?= build
 AT       = $(if $(VERBOSE),,@)
-PACKAGES = gsl libcjson nlopt
+PACKAGES = gsl libcjson nlopt expat
 # Reads H5MD, if it is there; HDF5= builds without.
 ifeq ($(origin HDF5),undefined)
 HDF5    := $(firstword $(foreach name,hdf5 hdf5-serial,$(shell pkg-config --exists $(name) && echo $(name))))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds wheels and source archives, by make and the standard library alone: what pip calls (PEP 517).
 
-A wheel holds the shared library and what it needs beside the C library (GSL, NLopt, cJSON, libgomp),
+A wheel holds the shared library and what it needs beside the C library (GSL, NLopt, cJSON, expat, libgomp),
 found by the run path $ORIGIN. An archive has the sources of the library in `source`; the tests are in
 clones alone.
 """

@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import mesofit  # noqa: E402
 
 GROUPS = (
-    ("What is done", ("measure", "fit", "simulate", "open")),
+    ("What is done", ("measure", "fit", "simulate", "open", "import_votca")),
     ("What goes in", ("Frames", "Scene", "law")),
     ("What comes out", ("Result", "Table", "Curves")),
     ("Driven by the caller", ("Simulation", "Rdf", "Means", "FORCE", "OBSERVABLE", "Problem", "State",

@@ -20,11 +20,11 @@ from ._problem import Curve, Optimiser, Problem, State, Value
 from ._result import Result, open
 from ._simulation import Means, Rdf, Simulation
 from ._table import Curves, Table
-from ._work import Scene, fit, law, measure, simulate
+from ._work import Scene, fit, import_votca, law, measure, simulate
 
 __all__ = [
     "Curve", "Curves", "Error", "FORCE", "FileError", "Frames", "InputError",
     "InterruptedWarning", "Means", "MesofitWarning", "OBSERVABLE", "Optimiser", "Problem", "Rdf",
     "Result", "Scene", "Simulation", "State", "Table", "UnconvergedWarning", "UnstableError", "Value",
-    "__version__", "fit", "law", "measure", "open", "simulate",
+    "__version__", "fit", "import_votca", "law", "measure", "open", "simulate",
 ]

@@ -281,7 +281,8 @@ def _filled(keys: Mapping[str, Any], density: float | None,
 
 
 def measure(trajectory: Any, structure: PathLike | None = None, *,
-            map: Content | None = None, molecules: Content | None = None,
+            map: Content | Sequence[PathLike] | None = None,
+            molecules: Content | None = None,
             begin: float | None = None, end: float | None = None, every: float | None = None,
             range: float | None = None, bins: int | None = None, q_range: float | None = None,
             waves: int | None = None, density_profile: str | None = None,
@@ -301,8 +302,9 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         Files follow each other in time.
     structure : path, optional
         Names, residues and masses of the atoms of files.
-    map : dict or path, optional
-        Atoms to beads; else a residue is a bead.
+    map : dict, path, or list of paths, optional
+        Atoms to beads, as of the program or, of VOTCA, one or several in XML; else a residue is a
+        bead.
     molecules : dict or path, optional
         Bonds of beads, as of a scene.
     begin, end, every : float, optional [ps]
@@ -359,7 +361,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
     words = ["measure", *files]
     words += _options(
         structure=None if structure is None else Path(structure),
-        map=None if map is None else Path(_lend(map, {}, "map", memory)),
+        map=None if map is None else Path(_maps(map, memory)),
         molecules=None if molecules is None else Path(_lend(molecules, {}, "molecules", memory)),
         begin=begin, end=end, every=every, range=range, bins=bins, q_range=q_range, waves=waves,
         density_profile=density_profile, profile_bins=profile_bins, window=window,
@@ -374,9 +376,58 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         back()
 
 
+def _maps(map: Content | Sequence[PathLike], memory: Memory) -> str:
+    """The word for a map, or for several of VOTCA."""
+    if isinstance(map, (list, tuple)):
+        return ";".join(_path(file) for file in map)
+    return _lend(map, {}, "map", memory)  # type: ignore[arg-type]
+
+
 #: Options of `measure` for a test that compares them with the program's.
 MEASURE_OPTIONS = tuple(name for name in inspect.signature(measure).parameters
                         if name not in ("trajectory", "folder", "threads", "force", "progress"))
+
+
+def import_votca(settings: PathLike, folder: PathLike = "imported", *,
+                 box: float | Sequence[float] | None = None,
+                 count: Mapping[str, int] | None = None, force: bool = False,
+                 progress: bool | None = None) -> Path:
+    """Make a run file of VOTCA's settings, as `mesofit import votca` does.
+
+    Parameters
+    ----------
+    settings : path
+        Of `csg_inverse`, in XML.
+    folder : path
+        For the run file and copies of its tables.
+    box : float or three of them, optional [nm]
+        Edges of the box, where no conf.gro beside the settings has it.
+    count : dict, optional
+        Beads of each type, where no file beside them has them.
+    force : bool
+        Replace files that were changed since.
+    progress
+        As of `simulate`; what was read and left out is among its lines.
+
+    Returns
+    -------
+    pathlib.Path
+        The run file, for `fit`.
+
+    Raises
+    ------
+    InputError
+        With the line that the program would print.
+    FileError
+        A file cannot be read, or the folder not be written.
+    """
+    words = ["import", "votca", _path(settings), "-o", _path(folder)]
+    words += _options(
+        box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),
+        count=None if count is None else ",".join(f"{type}={n}" for type, n in count.items()),
+        force=force)
+    carry_out(words, Memory(), progress)
+    return Path(folder) / "run.json"
 
 
 def _frames(trajectory: Any, memory: Memory) -> tuple[list[str], Callable[[], Any]]:

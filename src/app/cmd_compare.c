@@ -11,7 +11,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_compare = {
     .name = "compare",
     .usage = "DIR DIR...",
-    .summary = "compare finished fits and simulations: one table, one figure",
+    .summary = "compare fits and simulations: a table, a figure",
     .min_files = 1,
     .max_files = COMMAND_MAX_FILES,
     .run = run,

@@ -459,7 +459,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_describe = {
     .name = "describe",
     .usage = "[NAME]",
-    .summary = "list the keys of files with units, defaults and ranges",
+    .summary = "list keys of files, units, defaults, ranges",
     .min_files = 0,
     .max_files = 1,
     .options = options,

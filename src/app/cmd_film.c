@@ -44,7 +44,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_film = {
     .name = "film",
     .usage = "DIR",
-    .summary = "make a film of a simulation's snapshots",
+    .summary = "film a simulation's snapshots",
     .min_files = 1,
     .max_files = 1,
     .options = options,

@@ -61,7 +61,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_live = {
     .name = "live",
     .usage = "[FILE]",
-    .summary = "show and run scenes, run files and results in a browser",
+    .summary = "show and run files and results in a browser",
     .min_files = 0,
     .max_files = 1,
     .options = options,

@@ -9,7 +9,7 @@ static enum status run(const struct command_line *line) {
 const struct command cmd_plot = {
     .name = "plot",
     .usage = "DIR",
-    .summary = "draw the figures of a run's folder again",
+    .summary = "draw a run's figures again",
     .min_files = 1,
     .max_files = 1,
     .run = run,

@@ -6,17 +6,9 @@
 #include <string.h>
 
 const struct command *const mf_command_list[] = {
-    &mf_command_measure,
-    &mf_command_fit,
-    &mf_command_export,
-    &mf_command_simulate,
-    &cmd_live,
-    &cmd_plot,
-    &cmd_film,
-    &cmd_compare,
-    &cmd_describe,
-    &cmd_bench,
-    NULL,
+    &mf_command_measure, &mf_command_fit, &mf_command_export, &mf_command_simulate,
+    &mf_command_import,  &cmd_live,       &cmd_plot,          &cmd_film,
+    &cmd_compare,        &cmd_describe,   &cmd_bench,         NULL,
 };
 
 _Static_assert(sizeof mf_command_list / sizeof *mf_command_list <= COMMAND_MAX_COMMANDS + 1,

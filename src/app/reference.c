@@ -287,19 +287,19 @@ static void print_body(FILE *stream, const struct look *look, const struct topic
     look->heading(stream, 1, "Files");
     look->paragraph(
         stream,
-        "Run files (`mesofit fit`, section \"run\") and scene files (`mesofit simulate`, section "
-        "\"scene\") are strict JSON. Laws of \"conservative\" and \"dissipative\" are chosen by "
+        "Run files (section \"run\") and scene files (\"scene\") are strict JSON. Laws are chosen "
+        "by "
         "{\"law\": …}, {\"law\": \"none\"} for none, \"dynamics\" by {\"integrator\": …}, "
-        "\"method\" by {\"name\": …}. Units here are the reduced ones: energy k_B T_0, length "
-        "lambda, mass mu, time tau = lambda sqrt(mu/(k_B T_0)). With \"units\" at its top a file "
-        "is in nm, ps, u, kJ/mol, K and bar, or in angstrom, fs, g/mol, kcal/mol, K and atm.");
+        "\"method\" by {\"name\": …}. Units are reduced: energy k_B T_0, length lambda, mass mu, "
+        "time tau = lambda sqrt(mu/(k_B T_0)). With \"units\" at its top a file is in nm, ps, u, "
+        "kJ/mol, K, bar, or angstrom, fs, g/mol, kcal/mol, K, atm.");
     print_topics(stream, look, topics, count);
 }
 
 void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_t count) {
-    fprintf(stream, "# Reference\n\nThis page is made by `make docs`; the man page `mesofit(1)` "
-                    "has the same text, `mesofit describe TOPIC`\nall keys of a section. The files "
-                    "that runs write are in [files.md](files.md#results).\n");
+    fprintf(stream, "# Reference\n\nBy `make docs`; also the man page `mesofit(1)`. `mesofit "
+                    "describe TOPIC` has all keys of a section.\nFiles that runs write are in "
+                    "[files.md](files.md#results).\n");
     print_body(stream, &markdown, topics, count);
 }
 

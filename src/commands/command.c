@@ -5,14 +5,15 @@
 #include "base/nearest.h"
 
 #include <errno.h>
+#include <math.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 const struct command_option mf_command_common[] = {
     {"-o", "DIR",
-     "folder for the results (default: \"out\" beside the input file; \"target\" for measure, "
-     "\"compare\" for compare)"},
+     "folder for the results (default: \"out\" beside the input; of measure, compare, import "
+     "\"target\", \"compare\", \"imported\")"},
     {"--threads", "N",
      "threads (default: all processors; bench engine: 1); results do not depend on it"},
     {"--seed", "N", "seed, instead of the file's"},
@@ -162,4 +163,24 @@ enum status mf_command_find(const struct command *const *list, const char *name,
 enum status mf_command_check_live(const struct command_line *line, const char *option) {
     return line->live ? STATUS_OK
                       : mf_status_fail(STATUS_BAD_INPUT, "%s is for the program alone", option);
+}
+
+enum status mf_command_read_box(const char *text, double box[3]) {
+    const char *const given = text;
+    int count = 0;
+    char *end = NULL;
+    if (text == NULL)
+        return STATUS_OK;
+    for (bool more = true; more && count < 3; count++) {
+        box[count] = strtod(text, &end);
+        more = end > text && isfinite(box[count]) && box[count] > 0 && *end == ',';
+        text = more ? end + 1 : text;
+    }
+    if (end == text || *end != '\0' || !isfinite(box[count - 1]) || !(box[count - 1] > 0) ||
+        count == 2)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "--box takes one length or three, as 4,4,5, not \"%.60s\"", given);
+    for (int d = count; d < 3; d++)
+        box[d] = box[0];
+    return STATUS_OK;
 }

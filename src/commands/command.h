@@ -25,7 +25,7 @@ struct command_option {
 
 /// What --live takes, of commands that run something.
 #define COMMAND_LIVE_OPTION                                                                        \
-    { "--live", "[=PORT]", "show the run in a browser" }
+    { "--live", "[=PORT]", "show the run in a browser, at the printed address" }
 
 /// Run a scene or run file beside a page.
 /// @param[in] port  the option's value, or its name: any port
@@ -55,7 +55,7 @@ struct command {
 };
 
 extern const struct command mf_command_measure, mf_command_fit, mf_command_export,
-    mf_command_simulate;
+    mf_command_simulate, mf_command_import;
 
 /// Options that every subcommand takes, up to one without a name.
 extern const struct command_option mf_command_common[];
@@ -68,6 +68,9 @@ enum status mf_command_find(const struct command *const *list, const char *name,
 /// begun. Fails: BAD_INPUT with the line that the program prints.
 enum status mf_command_parse(const struct command *command, size_t count, const char *const *words,
                              struct command_line *line) MUST_USE;
+
+/// Take the value of --box, three lengths or one of a cube; NULL leaves it alone. Fails: BAD_INPUT.
+enum status mf_command_read_box(const char *text, double box[3]) MUST_USE;
 
 /// Refuse an option of a line whose words go nowhere, and pages that nobody serves.
 enum status mf_command_check_live(const struct command_line *line, const char *option) MUST_USE;

@@ -49,7 +49,7 @@ static enum status run(const struct command_line *line) {
 const struct command mf_command_export = {
     .name = "export",
     .usage = "DIR --engine NAME",
-    .summary = "write a result as files that another engine runs",
+    .summary = "write a result for another engine",
     .min_files = 1,
     .max_files = 1,
     .options = options,

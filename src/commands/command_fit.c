@@ -18,11 +18,12 @@ enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, FRICTION, LIVE };
 enum { MAX_RANKS = 100000 };
 
 static const struct command_option options[] = {
-    [EXPLAIN] = {"--explain", NULL, "print what would be done and its cost"},
-    [RANKS] = {"--ranks", "N", "with --explain: speed-up of N MPI processes"},
-    [TARGET] = {"--target", "DIR", "folder of target.json, or with the next two rdf.tsv"},
-    [DENSITY] = {"--density", "NUMBER", "number density, without target.json"},
-    [TEMPERATURE] = {"--temperature", "NUMBER", "temperature, without target.json; else 1"},
+    [EXPLAIN] = {"--explain", NULL, "print what will be done and what it costs; run nothing"},
+    [RANKS] = {"--ranks", "N", "with --explain: speed-up of N processes of an MPI job"},
+    [TARGET] = {"--target", "DIR", "folder of target.json; with the next two rdf.tsv is enough"},
+    [DENSITY] = {"--density", "NUMBER", "number density of the beads, without target.json"},
+    [TEMPERATURE] = {"--temperature", "NUMBER",
+                     "temperature of the target, without target.json; else 1"},
     [FRICTION] = {"--friction", "free|exportable|linear",
                   "omega: any, one that LAMMPS runs, or HOOMD and ESPResSo too"},
     [LIVE] = COMMAND_LIVE_OPTION,

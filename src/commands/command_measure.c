@@ -35,13 +35,13 @@ enum {
 };
 
 static const struct command_option options[] = {
-    [STRUCTURE] = {"-s", "FILE", "names, residues, masses (.gro, .top, .psf, …)"},
-    [MAP] = {"--map", "FILE.json", "atoms to beads (describe map); else a bead a residue"},
+    [STRUCTURE] = {"-s", "FILE", "names, residues, masses (.gro, .pdb, .top, .psf, …)"},
+    [MAP] = {"--map", "FILE", "atoms to beads (describe map, or VOTCA's); else a residue"},
     [MOLECULES] = {"--molecules", "FILE",
                    "bonds of beads (a scene's \"molecules\"); without a map a bead an atom"},
-    [BEGIN] = {"--begin", "T", "first time [ps]; else where equilibrium begins"},
-    [END] = {"--end", "T", "last time [ps]"},
-    [EVERY] = {"--every", "T", "time between frames [ps]"},
+    [BEGIN] = {"--begin", "T", "first time used [ps]; else the begin of equilibrium"},
+    [END] = {"--end", "T", "last time used [ps]"},
+    [EVERY] = {"--every", "T", "interval between the frames used [ps]"},
     [RANGE] = {"--range", "R", "range of g(r) [nm]; else most of half the box"},
     [BINS] = {"--bins", "N", "bins of g(r); else 0.01 nm wide"},
     [Q_RANGE] = {"--q-range", "Q", "range of S(q) [1/nm]; else 4 pi density^(1/3); 0: no S(q)"},
@@ -51,8 +51,9 @@ static const struct command_option options[] = {
     [WEIGHTED] = {"--weighted-density", "R0,RC",
                   "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]"},
     [WINDOW] = {"--window", "T",
-                "window of MSD, VACF, escape times [ps]; else a tenth, 100 frames at most"},
-    [ESCAPE] = {"--escape", "R", "distance of an escaped pair [nm]; else 1.6 density^(-1/3)"},
+                "window of MSD, VACF, escape times [ps]; else a tenth, at most 100 frames"},
+    [ESCAPE] = {"--escape", "R",
+                "distance at which a pair has escaped [nm]; else 1.6 density^(-1/3)"},
     [VELOCITIES] = {"--velocities", "file|differences|none",
                     "velocities of the VACF; else the file's, if any"},
     [STATIC] = {"--static", NULL, "no motion: frames in any order"},
@@ -106,28 +107,6 @@ static enum status read_choice(const struct command_line *line, int option,
                           options[option].value);
 }
 
-/// Three lengths, or one of a cube.
-static enum status read_box(const struct command_line *line, double box[3]) {
-    const char *text = line->own[BOX];
-    int count = 0;
-    char *end = NULL;
-    if (text == NULL)
-        return STATUS_OK;
-    for (bool more = true; more && count < 3; count++) {
-        box[count] = strtod(text, &end);
-        more = end > text && isfinite(box[count]) && box[count] > 0 && *end == ',';
-        text = more ? end + 1 : text;
-    }
-    if (end == text || *end != '\0' || !isfinite(box[count - 1]) || !(box[count - 1] > 0) ||
-        count == 2)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "--box takes one length or three, as 4,4,5, not \"%.60s\"",
-                              line->own[BOX]);
-    for (int d = count; d < 3; d++)
-        box[d] = box[0];
-    return STATUS_OK;
-}
-
 static enum status read_profile(const struct command_line *line, struct measured_plan *plan) {
     enum { USUAL_BINS = 100 };
     const char *const axis = line->own[PROFILE];
@@ -166,7 +145,7 @@ static enum status read_weighted(const struct command_line *line,
 static enum status read_request(const struct command_line *line, struct measure_request *request) {
     static const double above_zero = 1e-300;
     struct frames_plan *const frames = &request->frames;
-    TRY(read_box(line, frames->options.box));
+    TRY(mf_command_read_box(line->own[BOX], frames->options.box));
     TRY(read_number(line, BEGIN, 0, &frames->begin));
     TRY(read_number(line, END, 0, &frames->end));
     TRY(read_number(line, EVERY, above_zero, &frames->every));
@@ -214,7 +193,7 @@ static enum status run(const struct command_line *line) {
 const struct command mf_command_measure = {
     .name = "measure",
     .usage = "TRAJECTORY...",
-    .summary = "make a target of a simulation of atoms: beads, g(r), motion",
+    .summary = "a target of a simulation of atoms: beads, g(r), motion",
     .min_files = 1,
     .max_files = COMMAND_MAX_FILES,
     .options = options,

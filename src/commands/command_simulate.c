@@ -5,7 +5,7 @@
 enum { EXPLAIN, LIVE };
 
 static const struct command_option options[] = {
-    [EXPLAIN] = {"--explain", NULL, "print what would be done and its cost"},
+    [EXPLAIN] = {"--explain", NULL, "print what will be done and what it costs; run nothing"},
     [LIVE] = COMMAND_LIVE_OPTION,
     {NULL, NULL, NULL},
 };

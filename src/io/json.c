@@ -94,22 +94,26 @@ static void free_document(struct json_document *document) {
 }
 
 enum status mf_json_open(struct json_document **document, const char *file) {
+    OWNED char *text = NULL;
+    size_t length;
+    *document = NULL;
+    TRY(mf_text_file_read(file, &text, &length));
+    return mf_json_open_text(document, file, text);
+}
+
+enum status mf_json_open_text(struct json_document **document, const char *file, const char *text) {
     enum status status = STATUS_OK;
     struct json_document *opened = NULL;
-    char *text = NULL;
-    size_t length = 0;
     *document = NULL;
     NEW_ARRAY(opened, 1);
     NEW_ARRAY(opened->file, strlen(file) + 1);
     memcpy(opened->file, file, strlen(file) + 1);
-    CHECK(mf_text_file_read(file, &text, &length));
     CHECK(mf_json_parse(file, text, &opened->root));
     CHECK(mf_json_item_check(file, opened->root));
     struct json_object root = view(opened, opened->root);
     check_keys(&root);
     *document = opened;
 done:
-    mf_memory_free(text);
     if (status != STATUS_OK && opened)
         free_document(opened);
     return status;

@@ -37,6 +37,10 @@ struct json_object {
 /// On success the caller owns *document (mf_json_close).
 enum status mf_json_open(struct json_document **document, const char *file) MUST_USE;
 
+/// The same of a text that was made of `file`.
+enum status mf_json_open_text(struct json_document **document, const char *file,
+                              const char *text) MUST_USE;
+
 /// Put the document's own file into `inputs`, and from now on every file that a FIELD_FILE names.
 /// Both live as long as the document. Fails: NO_MEMORY. Tested: test_json.
 enum status mf_json_collect_files(struct json_document *document,

@@ -14,6 +14,7 @@
 /// Names of the lists: who writes into a folder owns what its like has written.
 #define TRACKED_FILES_OF_RUN ".mesofit-run"
 #define TRACKED_FILES_OF_EXPORT ".mesofit-export"
+#define TRACKED_FILES_OF_IMPORT ".mesofit-import"
 #define TRACKED_FILES_OF_COMPARISON ".mesofit-compare"
 #define TRACKED_FILES_OF_LIVE ".mesofit-live"
 

@@ -113,7 +113,8 @@ static bool damp(void *context, double *wanted) {
 // What is to be done ------------------------------------------------------------------------------
 
 static const struct command *const commands[] = {&mf_command_measure, &mf_command_fit,
-                                                 &mf_command_export, &mf_command_simulate, NULL};
+                                                 &mf_command_export,  &mf_command_simulate,
+                                                 &mf_command_import,  NULL};
 
 static enum status carry_out(struct mesofit_run *run, size_t count, const char *const *words,
                              const struct caller_observables *callers) {

@@ -3,7 +3,9 @@
 
 #include "topologies/gromacs_topology.h"
 #include "topologies/lammps_topology.h"
+#include "base/memory.h"
 #include "io/json.h"
+#include "trajectory/votca_map.h"
 
 #include <string.h>
 
@@ -40,6 +42,17 @@ static enum status read_topology(struct scene_molecules *molecules, struct compo
     return status;
 }
 
+/// A JSON file, or what maps of VOTCA are in JSON.
+static enum status open_file(struct json_document **document, const char *file) {
+    OWNED char *text = NULL;
+    if (!mf_votca_map_is(file))
+        return mf_json_open(document, file);
+    TRY(mf_votca_map_bonds(&text, file));
+    if (text == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: <cg_bonded> is missing or empty", file);
+    return mf_json_open_text(document, file, text);
+}
+
 enum status mf_molecules_file_read(struct scene_molecules *molecules, struct composition *types,
                                    const char *file) {
     struct json_document *document;
@@ -52,7 +65,7 @@ enum status mf_molecules_file_read(struct scene_molecules *molecules, struct com
                               file);
     if (is_topology(file))
         return read_topology(molecules, types, file);
-    TRY(mf_json_open(&document, file));
+    TRY(open_file(&document, file));
     struct json_object root = mf_json_root(document);
     read_types(&root, types);
     const enum status status =

@@ -107,10 +107,22 @@ static void cut(const struct target_rdf_parameters *p, struct target_rows *rows)
         rows->count--;
 }
 
+/// What is nearer to 0 than this share of the peak may be 0, as in the core of a g that was
+/// digitised or resampled.
+static const double slightly = 0.02;
+
+static double peak_of(const struct target_rows *rows) {
+    double peak = 0;
+    for (size_t k = 0; k < rows->count; k++)
+        peak = fmax(peak, rows->y[k]);
+    return peak;
+}
+
 /// VOTCA and gmx rdf have their bins about multiples of the width. The one about r = 0 is half a
-/// bin: it is left out if it is empty, and the bins begin where it ends.
+/// bin: it is left out if it is empty, as far as that can be told, and the bins begin where it
+/// ends.
 static void leave_out_half_bin(struct target_rows *rows) {
-    if (rows->count < 2 || rows->x[0] != 0 || rows->y[0] != 0)
+    if (rows->count < 2 || rows->x[0] != 0 || fabs(rows->y[0]) > slightly * peak_of(rows))
         return;
     rows->count--;
     memmove(rows->x, rows->x + 1, rows->count * sizeof *rows->x);
@@ -140,13 +152,11 @@ static enum status find_bins(const struct target_rows *rows, const char *file,
     return STATUS_OK;
 }
 
-/// Read what is slightly below 0, as a digitised g is in its core, as 0.
+/// Read what is slightly below 0 as 0.
 static enum status check_values(struct target_rdf *target, struct target_rows *rows) {
-    static const double slightly = 0.02, standard_errors = 3; // of the peak
+    static const double standard_errors = 3;
     const char *file = target->parameters.file;
-    double peak = 0;
-    for (size_t k = 0; k < rows->count; k++)
-        peak = fmax(peak, rows->y[k]);
+    const double peak = peak_of(rows);
     for (size_t k = 0; k < rows->count; k++) {
         if (rows->error[k] < 0)
             return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: a negative error of g, %g", file,

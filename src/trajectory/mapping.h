@@ -14,6 +14,7 @@ struct mapping {
     struct mapping_bead {
         size_t first, count; ///< its atoms in `atom`, in the order in which they are made whole
         size_t type;
+        bool weighted;   ///< its weights were given, and are not those of masses
         size_t molecule; ///< residue or molecule of its first atom; beads of one may be left out of
                          ///< g(r)
         double mass;     ///< [u]; NAN: not known

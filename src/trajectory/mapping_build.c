@@ -82,12 +82,10 @@ static const char *name_type(const struct work *work, const struct mapping_entry
     return atom->residue_name[0] || !alone ? atom->residue_name : atom->name;
 }
 
-/// Begin a bead whose atoms follow.
-static enum status begin_bead(struct work *work, const struct mapping_entry *entry, size_t atom) {
+/// Begin a bead whose atoms follow, of a residue or of a molecule that begins with it.
+static enum status begin_bead_of(struct work *work, const char *name, size_t residue) {
     struct mapping *const mapping = work->mapping;
-    const struct structure_atom *const a = &work->structure->atom[atom];
-    const size_t residue = work->structure->residues ? a->residue : atom;
-    const size_t type = find_type(work, name_type(work, entry, a, residue), residue);
+    const size_t type = find_type(work, name, residue);
     if (mapping->types > MAPPING_MAX_BEADS)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: more than %d types of beads; a map (--map) makes fewer",
@@ -95,6 +93,12 @@ static enum status begin_bead(struct work *work, const struct mapping_entry *ent
     mapping->bead[mapping->beads++] =
         (struct mapping_bead){.first = work->used, .type = type, .molecule = residue};
     return STATUS_OK;
+}
+
+static enum status begin_bead(struct work *work, const struct mapping_entry *entry, size_t atom) {
+    const struct structure_atom *const a = &work->structure->atom[atom];
+    const size_t residue = work->structure->residues ? a->residue : atom;
+    return begin_bead_of(work, name_type(work, entry, a, residue), residue);
 }
 
 static enum status add_atom(struct work *work, size_t atom) {
@@ -108,8 +112,9 @@ static enum status add_atom(struct work *work, size_t atom) {
 }
 
 static void end_bead(struct work *work, const struct mapping_entry *entry) {
-    const struct mapping_bead *const bead = &work->mapping->bead[work->mapping->beads - 1];
-    for (size_t i = 0; entry->centre == MAPPING_CENTRE_OF_GEOMETRY && i < bead->count; i++)
+    struct mapping_bead *const bead = &work->mapping->bead[work->mapping->beads - 1];
+    bead->weighted = entry->centre == MAPPING_CENTRE_OF_GEOMETRY;
+    for (size_t i = 0; bead->weighted && i < bead->count; i++)
         work->mapping->weight[bead->first + i] = 1.0 / (double)bead->count;
 }
 
@@ -197,6 +202,76 @@ static enum status take_residues(struct work *work, const struct mapping_entry *
     return STATUS_OK;
 }
 
+/// The first molecule of the plan whose residues begin here, or NULL.
+static const struct mapping_molecule *find_molecule(const struct work *work, size_t residue) {
+    const struct mapping_plan *const plan = work->plan;
+    for (size_t k = 0; k < plan->molecules; k++) {
+        const struct mapping_molecule *const molecule = &plan->molecule[k];
+        size_t same = 0;
+        while (same < molecule->residues && residue + same < work->residues) {
+            const char *const name = plan->residue[molecule->first_residue + same];
+            const size_t atom = work->member[work->first[residue + same]];
+            if (name[0] && strcmp(name, work->structure->atom[atom].residue_name) != 0)
+                break;
+            same++;
+        }
+        if (same == molecule->residues)
+            return molecule;
+    }
+    return NULL;
+}
+
+static enum status take_molecule(struct work *work, const struct mapping_molecule *molecule,
+                                 size_t residue) {
+    const struct mapping_plan *const plan = work->plan;
+    for (size_t k = 0; k < molecule->parts; k++) {
+        const struct mapping_part *const part = &plan->part[molecule->first_part + k];
+        TRY(begin_bead_of(work, part->type, residue));
+        struct mapping_bead *const bead = &work->mapping->bead[work->mapping->beads - 1];
+        bead->weighted = true;
+        for (size_t i = 0; i < part->count; i++) {
+            const struct mapping_member *const member = &plan->member[part->first + i];
+            const struct word name = {member->name, strlen(member->name)};
+            TRY(add_named(work, residue + member->residue, &name));
+            work->mapping->weight[work->used - 1] = member->weight;
+        }
+    }
+    return STATUS_OK;
+}
+
+/// Fails: BAD_INPUT for a molecule of the plan that is not there.
+static enum status check_molecules(const struct work *work, const bool *found) {
+    const struct mapping_plan *const plan = work->plan;
+    for (size_t k = 0; k < plan->molecules; k++) {
+        const struct mapping_molecule *const molecule = &plan->molecule[k];
+        const char *const name = plan->residue[molecule->first_residue];
+        if (!found[k])
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: molecule \"%s\": there is no residue \"%s\"%s%s", plan->file,
+                                  molecule->name, name,
+                                  molecule->residues > 1 ? " that its other residues follow" : "",
+                                  work->structure->has_residues
+                                      ? ""
+                                      : ": these atoms have no residues; a .gro or .pdb by -s has");
+    }
+    return STATUS_OK;
+}
+
+/// Molecules after each other; residues that begin none are left out.
+static enum status take_molecules(struct work *work) {
+    OWNED bool *found = NULL;
+    TRY_ARRAY(found, work->plan->molecules);
+    for (size_t r = 0; r < work->residues;) {
+        const struct mapping_molecule *const molecule = find_molecule(work, r);
+        if (molecule) {
+            TRY(take_molecule(work, molecule, r));
+            found[molecule - work->plan->molecule] = true;
+        }
+        r += molecule ? molecule->residues : 1;
+    }
+    return check_molecules(work, found);
+}
+
 static bool is_used(const struct mapping *mapping, const char *name) {
     for (size_t type = 0; type < mapping->types; type++)
         if (strcmp(mapping->type_name[type], name) == 0)
@@ -232,8 +307,7 @@ static bool is_broken(const struct work *work) {
     for (size_t k = 0; k < work->mapping->beads; k++) {
         const struct mapping_bead *const bead = &work->mapping->bead[k];
         const size_t *const first = work->first + bead->molecule;
-        if (bead->count < first[1] - first[0] ||
-            (bead->count > 1 && work->mapping->weight[bead->first] > 0))
+        if (bead->count < first[1] - first[0])
             return true;
     }
     return false;
@@ -253,6 +327,8 @@ enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan 
     for (size_t k = 0; k < plan->entries; k++)
         CHECK(plan->entry[k].first ? take_range(&work, &plan->entry[k])
                                    : take_residues(&work, &plan->entry[k]));
+    if (plan->molecules > 0)
+        CHECK(take_molecules(&work));
     CHECK(find_rest(&work));
     name_rest(mapping);
     mapping->broken = is_broken(&work);

@@ -94,13 +94,29 @@ static void look_for_united(struct reported *reported, const struct structure *s
         reported->carbon = &structure->atom[k];
 }
 
+/// Whether given weights are those of masses, as 16 1 1 of water: a bead's velocity is then that of
+/// its centre of mass, but for the share by which they differ.
+static bool moves_with_mass(const struct mapping *mapping, const struct mapping_plan *plan,
+                            const struct structure *structure, const struct mapping_bead *bead,
+                            const struct reported *reported) {
+    static const double share = 0.01;
+    for (size_t i = 0; bead->weighted && bead->count > 1 && i < bead->count; i++) {
+        double mass;
+        (void)find_mass(plan, structure, reported->from_file, mapping->atom[bead->first + i],
+                        &mass);
+        if (!(fabs(mapping->weight[bead->first + i] - mass / bead->mass) < share))
+            return false;
+    }
+    return true;
+}
+
 /// The mass of a bead, and the weights of its atoms if these are not those of geometry. The weight
 /// of an atom alone is 1, whatever its mass; atoms none of which has a mass weigh the same.
 static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan *plan,
                               const struct structure *structure, struct mapping_bead *bead,
                               struct reported *reported) {
     double *const weight = &mapping->weight[bead->first];
-    const bool by_mass = weight[0] == 0;
+    const bool by_mass = !bead->weighted;
     for (size_t i = 0; i < bead->count; i++) {
         const size_t k = mapping->atom[bead->first + i];
         double mass;
@@ -118,6 +134,7 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
         if (by_mass)
             weight[i] = bead->count > 1 ? mass : 1;
     }
+    mapping->broken = mapping->broken || !moves_with_mass(mapping, plan, structure, bead, reported);
     const bool without = bead->mass == 0;
     for (size_t i = 0; by_mass && bead->count > 1 && i < bead->count; i++)
         weight[i] = without ? 1 / (double)bead->count : weight[i] / bead->mass;

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "io/json.h"
+#include "trajectory/votca_map.h"
 
 #include <string.h>
 
@@ -109,6 +110,8 @@ static void read_masses(struct mapping_plan *plan, struct json_object *root) {
 enum status mf_mapping_plan_read(struct mapping_plan *plan, const char *file) {
     struct json_document *document;
     struct rest rest = {0};
+    if (mf_votca_map_is(file))
+        return mf_votca_map_read(plan, file);
     *plan = (struct mapping_plan){0};
     snprintf(plan->file, sizeof plan->file, "%s", file);
     TRY(mf_json_open(&document, file));
@@ -132,5 +135,9 @@ enum status mf_mapping_plan_default(struct mapping_plan *plan) {
 
 void mf_mapping_plan_clear(struct mapping_plan *plan) {
     mf_memory_free(plan->entry);
+    mf_memory_free(plan->molecule);
+    mf_memory_free(plan->residue);
+    mf_memory_free(plan->part);
+    mf_memory_free(plan->member);
     *plan = (struct mapping_plan){0};
 }

@@ -10,7 +10,7 @@
 #include "base/status.h"
 #include "trajectory/structure.h"
 
-enum { MAPPING_MAX_BEADS = 60, MAPPING_MAX_MASSES = 60 };
+enum { MAPPING_MAX_BEADS = 60, MAPPING_MAX_MASSES = 60, MAPPING_MAX_RESIDUES = 10000 };
 
 enum mapping_centre { MAPPING_CENTRE_OF_MASS, MAPPING_CENTRE_OF_GEOMETRY };
 
@@ -24,10 +24,36 @@ struct mapping_entry {
     int centre;                ///< enum mapping_centre
 };
 
+/// An atom of a molecule's bead: of which of the molecule's residues, and its weight in a mean.
+struct mapping_member {
+    size_t residue; ///< from 0
+    char name[STRUCTURE_NAME];
+    double weight;
+};
+
+/// A bead of a molecule.
+struct mapping_part {
+    char name[STRUCTURE_NAME], type[STRUCTURE_NAME];
+    size_t first, count; ///< in `member` of the plan
+};
+
+/// Beads of a molecule that is one or several residues after each other.
+struct mapping_molecule {
+    char name[STRUCTURE_NAME];
+    size_t residues, first_residue; ///< in `residue` of the plan
+    size_t parts, first_part;       ///< in `part` of the plan
+};
+
 struct mapping_plan {
     char file[FIELD_TEXT_SIZE]; ///< for messages
     struct mapping_entry *entry;
     size_t entries;
+    struct mapping_molecule *molecule; ///< of VOTCA's maps (votca_map.h), in place of entries
+    char (*residue)[STRUCTURE_NAME];   ///< their names; "": any
+    struct mapping_part *part;
+    struct mapping_member *member;
+    size_t molecules, residues, parts, members;
+    size_t capacity[4]; ///< of these four
     struct mapping_mass {
         char name[STRUCTURE_NAME];
         double mass;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/measure_run.h"
 
+#include "base/memory.h"
 #include "scene/molecules_file.h"
 #include "io/units.h"
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
+#include "trajectory/votca_map.h"
 #include "work/measure_output.h"
 #include "work/measure_print.h"
 
@@ -35,7 +37,13 @@ static enum status collect_inputs(struct run *run) {
         TRY(mf_input_files_add(&run->inputs, request->structure));
     if (request->molecules)
         TRY(mf_input_files_add(&run->inputs, request->molecules));
-    return request->map ? mf_input_files_add(&run->inputs, request->map) : STATUS_OK;
+    if (request->map == NULL || !mf_votca_map_is(request->map))
+        return request->map ? mf_input_files_add(&run->inputs, request->map) : STATUS_OK;
+    const char *at = request->map;
+    char file[VOTCA_MAP_PATH_SIZE];
+    while (mf_votca_map_next(&at, file, sizeof file))
+        TRY(mf_input_files_add(&run->inputs, file));
+    return STATUS_OK;
 }
 
 static const char *structure_file(const struct run *run) {
@@ -305,11 +313,24 @@ static enum status carry_out(struct run *run, const struct run_options *options)
                                          run->measured.frames, run->folder.path);
 }
 
+/// A map of VOTCA that has bonds tells of the molecules, too.
+static enum status find_bonds_of_map(struct measure_request *request) {
+    OWNED char *bonds = NULL;
+    if (request->map && !request->molecules && mf_votca_map_is(request->map))
+        TRY(mf_votca_map_bonds(&bonds, request->map));
+    if (bonds)
+        request->molecules = request->map;
+    return STATUS_OK;
+}
+
 enum status mf_measure_run(const struct measure_request *request,
                            const struct run_options *options) {
-    struct run run = {.request = request,
+    struct measure_request own = *request;
+    struct run run = {.request = &own,
                       .progress = mf_progress_begin(options->quiet, options->watcher)};
-    const enum status status = carry_out(&run, options);
+    enum status status = find_bonds_of_map(&own);
+    if (status == STATUS_OK)
+        status = carry_out(&run, options);
     mf_beads_file_clear(&run.beads);
     mf_measured_clear(&run.measured);
     mf_scene_molecules_clear(&run.molecules);

@@ -37,7 +37,8 @@ static void assert_has(const char *words, const char *expected) {
 
 static void test_completion_knows_subcommands_and_options(void **state) {
     (void)state;
-    assert_completes("\"\"", "bench compare describe export film fit live measure plot simulate ");
+    assert_completes("\"\"",
+                     "bench compare describe export film fit import live measure plot simulate ");
     assert_completes("co", "compare ");
     assert_completes("fit --e", "--explain ");
     assert_completes("fit --re", "--resume ");

@@ -3,13 +3,16 @@
 // Every reader of a file, for libFuzzer: the first byte of an input says which one, the rest is the
 // file. `make fuzz` builds and runs it. What a reader may do is take the file or refuse it.
 #include "base/digest.h"
+#include "base/memory.h"
 #include "io/data_table.h"
 #include "io/votca.h"
 #include "io/checkpoint.h"
 #include "defaults/fit_file.h"
+#include "import/import_system.h"
 #include "report/result.h"
 #include "trajectory/mapping.h"
 #include "trajectory/trajectory.h"
+#include "trajectory/votca_map.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -122,9 +125,30 @@ static void read_map(const char *file) {
     struct mapping_plan plan;
     if (mf_mapping_plan_read(&plan, file) != STATUS_OK)
         return;
-    if (plan.entries == 0)
+    if (plan.entries == 0 && plan.molecules == 0)
         abort();
     mf_mapping_plan_clear(&plan);
+}
+
+/// VOTCA's maps are known by the name.
+static void read_votca_map(const char *file) {
+    char *bonds = NULL;
+    read_map(file);
+    if (mf_votca_map_bonds(&bonds, file) == STATUS_OK)
+        mf_memory_free(bonds);
+}
+
+static void read_settings(const char *file) {
+    static struct import_settings settings;
+    struct import_system system;
+    if (mf_import_settings_read(&settings, file) == STATUS_OK &&
+        mf_import_system_find(&system, &settings, &(struct import_options){.box = {3, 3, 3}}) ==
+            STATUS_OK) {
+        if (system.beads.types == 0)
+            abort();
+        mf_import_system_clear(&system);
+    }
+    mf_import_settings_clear(&settings);
 }
 
 /// The file as it is, and with the checksum that its bytes should have: the second gets further.
@@ -166,10 +190,10 @@ static void read_result(const char *name, const uint8_t *data, size_t size) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const char *const results[] = {"summary.json", "history.tsv",   "timing.tsv",
                                           "rdf.tsv",      "potential.tsv", "omega.tsv"};
-    const char *const file = "input";
     if (size == 0)
         return 0;
     const uint8_t kind = data[0];
+    const char *const file = kind == 'w' || kind == 'i' ? "input.xml" : "input";
     write_file(file, ++data, --size);
     if (kind == 't')
         read_table(file);
@@ -185,6 +209,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         read_trajectory(file, "lj");
     else if (kind == 'm')
         read_map(file);
+    else if (kind == 'w')
+        read_votca_map(file);
+    else if (kind == 'i')
+        read_settings(file);
     else if (kind == 'c')
         read_checkpoint(file, data, size);
     else if (kind >= '0' && kind <= '5')

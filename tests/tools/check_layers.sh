@@ -49,6 +49,7 @@ only_in() {
 faults=$(
     includes_against_the_rules
     only_in 'src/io/json[_a-z]*.c' 'include.*cJSON\.h' 'cJSON'
+    only_in src/io/xml.c 'include.*expat\.h' 'expat'
     only_in src/base/ranks.c 'include.*mpi\.h' 'MPI'
     only_in src/live/live_server.c 'include.*microhttpd\.h' 'libmicrohttpd'
     only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'

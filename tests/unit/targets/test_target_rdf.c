@@ -232,6 +232,16 @@ static void test_target_read_takes_votca_in_nanometres(void **state) {
     assert_identical(target.g[2], 1.5);
     assert_true(target.assumed);
     mf_target_rdf_clear(&target);
+    // Which resampling may have left a little off 0, as in VOTCA's propane.
+    assert_ok(read(state, "0 1e-7 i\n0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n",
+                   VOTCA ", \"cutoff\": 0.8", &target));
+    mf_target_rdf_clear(&target);
+    assert_ok(read(state, "0 -1e-7 i\n0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n",
+                   VOTCA ", \"cutoff\": 0.8", &target));
+    assert_int_equal(target.bins.count, 4);
+    mf_target_rdf_clear(&target);
+    assert_refused(state, "0 -0.5 i\n0.1 0 i\n0.2 0.5 i\n0.3 1.5 i\n0.4 1 i\n0.5 1 i\n", VOTCA,
+                   "g.tsv:1: a negative g, -0.5");
 }
 
 /// Normalised by N_a² for pairs of one type, of the system that was measured.

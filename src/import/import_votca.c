@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/import_votca.h"
+
+#include "base/memory.h"
+#include "io/json_write.h"
+#include "io/text_file.h"
+#include "io/tracked_files.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct job {
+    const struct import_request *request;
+    struct import_settings settings;
+    struct import_system system;
+    struct tracked_files own;
+    struct json_writer *writer;
+};
+
+// Tables ------------------------------------------------------------------------------------------
+
+/// The name that a copy has in the folder.
+static const char *name_of(const char *file) {
+    const char *const slash = strrchr(file, '/');
+    return slash ? slash + 1 : file;
+}
+
+static enum status copy(struct job *job, const char *file) {
+    char from[OUTPUT_PATH_SIZE], to[OUTPUT_PATH_SIZE];
+    OWNED char *text = NULL;
+    size_t length;
+    struct output output;
+    mf_import_settings_path(&job->settings, file, from);
+    snprintf(to, sizeof to, "%.3000s/%.1000s", job->own.folder, name_of(file));
+    TRY(mf_text_file_read(from, &text, &length));
+    TRY(mf_output_open(&output, to));
+    fwrite(text, 1, length, output.stream);
+    return mf_output_commit(&output);
+}
+
+static enum status copy_tables(struct job *job) {
+    const struct import_settings *const settings = &job->settings;
+    for (size_t k = 0; k < settings->pairs; k++)
+        TRY(copy(job, settings->pair[k].target->text));
+    for (size_t k = 0; k < settings->groups; k++)
+        TRY(copy(job, settings->group[k].target ? settings->group[k].target->text
+                                                : settings->group[k].table_file));
+    return STATUS_OK;
+}
+
+// The run file ------------------------------------------------------------------------------------
+
+static void write_table(struct json_writer *writer, const char *key, const char *file,
+                        double cutoff) {
+    mf_json_begin(writer, key);
+    mf_json_write_text(writer, "file", name_of(file));
+    mf_json_write_text(writer, "format", "votca");
+    if (isfinite(cutoff))
+        mf_json_write_number(writer, "cutoff", cutoff);
+    mf_json_end(writer);
+}
+
+static void write_pairs(const struct job *job) {
+    const struct import_settings *const settings = &job->settings;
+    if (job->system.beads.types == 1) {
+        write_table(job->writer, "rdf", settings->pair[0].target->text, settings->pair[0].cutoff);
+        return;
+    }
+    mf_json_begin(job->writer, "rdf");
+    for (size_t k = 0; k < settings->pairs; k++) {
+        const struct import_pair *const pair = &settings->pair[k];
+        char name[2 * COMPOSITION_NAME_SIZE];
+        snprintf(name, sizeof name, "%s-%s", pair->type[0], pair->type[1]);
+        write_table(job->writer, name, pair->target->text, pair->cutoff);
+    }
+    mf_json_end(job->writer);
+}
+
+/// Groups of an order that have a target, or those that have a table.
+static void write_groups(const struct job *job, const char *key, int order, bool with_target) {
+    const struct import_settings *const settings = &job->settings;
+    bool begun = false;
+    for (size_t k = 0; k < settings->groups; k++) {
+        const struct import_group *const group = &settings->group[k];
+        if (group->order != order || (group->target != NULL) != with_target)
+            continue;
+        if (!begun)
+            mf_json_begin(job->writer, key);
+        begun = true;
+        if (with_target) {
+            write_table(job->writer, group->name, group->target->text, NAN);
+            continue;
+        }
+        mf_json_begin(job->writer, group->name);
+        mf_json_write_text(job->writer, "law", "table");
+        mf_json_write_text(job->writer, "file", name_of(group->table_file));
+        mf_json_end(job->writer);
+    }
+    if (begun)
+        mf_json_end(job->writer);
+}
+
+static void write_target(const struct job *job) {
+    static const char *const keys[BONDED_KINDS] = {"bond_lengths", "bond_angles",
+                                                   "dihedral_angles"};
+    const struct xml_element *const pressure = job->settings.pressure;
+    mf_json_begin(job->writer, "target");
+    write_pairs(job);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        write_groups(job, keys[order], order, true);
+    if (pressure) {
+        mf_json_begin(job->writer, "pressure");
+        mf_json_write_number(job->writer, "value", strtod(pressure->text, NULL));
+        mf_json_end(job->writer);
+    }
+    mf_json_end(job->writer);
+}
+
+static void write_masses(const struct job *job) {
+    const struct composition *const beads = &job->system.beads;
+    for (int type = 0; type < beads->types; type++)
+        if (!(job->system.mass[type] > 0))
+            return;
+    if (beads->types == 1) {
+        mf_json_write_number(job->writer, "mass", job->system.mass[0]);
+        return;
+    }
+    mf_json_begin(job->writer, "mass");
+    for (int type = 0; type < beads->types; type++)
+        mf_json_write_number(job->writer, beads->name[type], job->system.mass[type]);
+    mf_json_end(job->writer);
+}
+
+static void write_particles(const struct job *job) {
+    const struct composition *const single = &job->system.single;
+    mf_json_begin(job->writer, "particles");
+    if (single->types == 1 && !scene_has_molecules(&job->system.molecules)) {
+        mf_json_write_integer(job->writer, "count", single->count[0]);
+    } else if (mf_composition_particles(single) > 0) {
+        mf_json_begin(job->writer, "types");
+        for (int type = 0; type < single->types; type++)
+            if (single->count[type] > 0)
+                mf_json_write_integer(job->writer, single->name[type], single->count[type]);
+        mf_json_end(job->writer);
+    }
+    write_masses(job);
+    mf_json_end(job->writer);
+}
+
+static void write_scene(const struct job *job) {
+    mf_json_begin(job->writer, "scene");
+    mf_json_write_quantities(job->writer, "box", "lambda", job->system.box, 3);
+    mf_json_write_number(job->writer, "temperature", job->settings.temperature);
+    write_particles(job);
+    if (scene_has_molecules(&job->system.molecules))
+        mf_scene_kinds_write(&job->system.molecules, &job->system.beads, 1, job->writer);
+    for (int order = 0; order < BONDED_KINDS; order++)
+        write_groups(job, mf_bonded_kinds[order]->plural, order, false);
+    mf_json_end(job->writer);
+}
+
+static enum status write_run(const struct job *job) {
+    char path[OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%.4000s/run.json", job->own.folder);
+    mf_json_write_text(job->writer, "title", job->settings.document.file);
+    mf_json_write_text(job->writer, "units", "nm-ps");
+    write_target(job);
+    write_scene(job);
+    return mf_json_write(job->writer, path);
+}
+
+// What is said ------------------------------------------------------------------------------------
+
+static void print_read(const struct job *job) {
+    struct progress *const progress = job->request->progress;
+    const struct import_settings *const settings = &job->settings;
+    const struct import_system *const system = &job->system;
+    for (size_t k = 0; k < settings->pairs; k++)
+        mf_import_print(progress, "read: %s: g(r) of %s, to %g nm", settings->pair[k].name,
+                        settings->pair[k].target->text, settings->pair[k].cutoff);
+    for (size_t k = 0; k < settings->groups; k++) {
+        const struct import_group *const group = &settings->group[k];
+        mf_import_print(progress, "read: %s: %s %s %s", group->name,
+                        mf_bonded_kinds[group->order]->name,
+                        group->target ? "with the distribution of" : "with the known potential",
+                        group->target ? group->target->text : group->table_file);
+    }
+    mf_import_print(progress, "read: temperature %g K", settings->temperature);
+    if (settings->pressure)
+        mf_import_print(progress, "read: pressure %s bar", settings->pressure->text);
+    mf_import_print(progress, "read: box %g %g %g nm of %s", system->box[0], system->box[1],
+                    system->box[2], system->box_file[0] ? system->box_file : "--box");
+    for (int type = 0; type < system->beads.types; type++)
+        mf_import_print(progress, "read: %lld beads %s of %s", (long long)system->beads.count[type],
+                        system->beads.name[type],
+                        system->beads_file[0] ? system->beads_file : "--count");
+    mf_import_settings_print_rest(settings, progress);
+    mf_import_print(progress, "mesofit fit %s/run.json --explain tells what a fit will do",
+                    job->own.folder);
+}
+
+// All of it ---------------------------------------------------------------------------------------
+
+/// The folder is empty, or an import wrote it that nobody has changed, unless `force`.
+static enum status open_folder(struct job *job) {
+    const char *const folder = job->request->folder;
+    struct tracked_files *const own = &job->own;
+    TRY(mf_tracked_files_make(own, folder, TRACKED_FILES_OF_IMPORT));
+    own->force = job->request->force;
+    if (!own->list.there && !own->force && mf_tracked_files_has_others(own))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: the folder holds files that are not of an import: give another "
+                              "folder with -o; --force replaces those of the same names",
+                              folder);
+    TRY(mf_tracked_files_lock(own));
+    return mf_tracked_files_check(own, NULL);
+}
+
+static enum status carry_out(struct job *job) {
+    TRY(mf_import_settings_read(&job->settings, job->request->file));
+    TRY(mf_import_system_find(&job->system, &job->settings, &job->request->options));
+    TRY(open_folder(job));
+    TRY(mf_tracked_files_begin(&job->own, 0));
+    TRY(copy_tables(job));
+    job->writer = mf_json_writer_create();
+    TRY(job->writer ? STATUS_OK : STATUS_NO_MEMORY);
+    TRY(write_run(job));
+    TRY(mf_tracked_files_remove_earlier(&job->own));
+    print_read(job);
+    return STATUS_OK;
+}
+
+enum status mf_import_votca(const struct import_request *request) {
+    struct job job = {.request = request};
+    const enum status status = carry_out(&job);
+    mf_json_writer_free(job.writer);
+    mf_tracked_files_close(&job.own);
+    mf_import_system_clear(&job.system);
+    mf_import_settings_clear(&job.settings);
+    return status;
+}
