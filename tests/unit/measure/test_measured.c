@@ -34,7 +34,8 @@ static struct film *make_film(size_t frames, size_t types) {
     film->mapping = (struct mapping){BEADS,      BEADS,        types, film->name, film->bead,
                                      film->atom, film->weight, {0},   false};
     for (size_t k = 0; k < BEADS; k++) {
-        film->bead[k] = (struct mapping_bead){k, 1, types == 2 && k >= BEADS / 3, k, 2};
+        film->bead[k] = (struct mapping_bead){
+            .first = k, .count = 1, .type = types == 2 && k >= BEADS / 3, .molecule = k, .mass = 2};
         film->atom[k] = k;
         film->weight[k] = 1;
     }
