@@ -37,6 +37,10 @@ static void test_weighted_density_is_that_of_the_trajectory(void **state) {
         const double expected = results_number("out/summary.json", keys[k]);
         assert_close(results_number("measured/summary.json", keys[k]), expected, 1e-4 * expected);
     }
+    // A column that is called as the target would be taken for its values.
+    char *table = temporary_folder_read("measured/weighted_density.tsv");
+    assert_ptr_equal(strstr(table, "# rho[1]\tp[1]\terror[1]\n"), table);
+    free(table);
     char *target = temporary_folder_read("measured/target.json");
     assert_non_null(strstr(target, "weighted_density.tsv"));
     free(target);
