@@ -41,7 +41,7 @@ static void assert_reported(const char *markdown, const char *man, const char *n
     for (const char *letter = name; *letter; letter++)
         used += (size_t)snprintf(bold + used, sizeof bold - used, "%s%c",
                                  *letter == '-' ? "\\" : "", *letter);
-    snprintf(quoted, sizeof quoted, "| `%s", name);
+    snprintf(quoted, sizeof quoted, "\n`%s", name);
     if (strstr(markdown, quoted) == NULL || strstr(man, bold) == NULL)
         fail_msg("the reference does not tell of %s", name);
 }
@@ -90,9 +90,9 @@ static void test_reference_prints_a_shared_table_once(void **state) {
     (void)state;
     static const char *const methods[] = {"imc", "ibi", "inversions"};
     char *markdown = shell("\"$MESOFIT\" describe --format markdown");
-    const char *row = strstr(markdown, "\n| `sampler` |");
+    const char *row = strstr(markdown, "\n`sampler` |");
     assert_non_null(row);
-    assert_null(strstr(row + 1, "\n| `sampler` |"));
+    assert_null(strstr(row + 1, "\n`sampler` |"));
     assert_contains(strstr(markdown, "\n### imc\n"), "[inversions](#inversions)");
     free(markdown);
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {

@@ -329,7 +329,7 @@ static void test_units_of_all_field_tables_are_known(void **state) {
         struct units_text parsed;
         for (char *bar; (bar = strstr(line, "\\|"));) // of choices
             bar[1] = '/';
-        if (sscanf(line, "| `%255[^`]` | %2047[^|]| %*[^][|][%255[^]]", key, what, unit) != 3)
+        if (sscanf(line, "`%255[^`]` | %2047[^|]| %*[^][|][%255[^]]", key, what, unit) != 3)
             continue;
         rows++;
         if (!mf_units_text_parse(&parsed, unit, 3))
