@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What is exported, run by LAMMPS (Debian's lmp; skipped where there is none): water with the
-// shipped potential has the g(r), temperature and pressure of our own simulation.
+// shipped potential has the g(r), temperature and pressure of our own simulation, and a fluid with
+// the friction of the package DPD-BASIC, where lmp has that, also its diffusion.
 #include "shared/length.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -11,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void skip_without_lammps(void) {
     if (system("command -v lmp >/dev/null") == 0)
@@ -40,7 +42,7 @@ static void write_scene(struct temporary_folder *folder) {
 }
 
 /// The last rows of rdf.dat, "bin r g coordination", beside ours.
-static double rdf_difference(const char *ours, const char *theirs) {
+static double rdf_difference(const char *ours, const char *theirs, double unit) {
     FILE *first = fopen(ours, "r"), *second = fopen(theirs, "r");
     char line[512], other[512];
     double squares = 0;
@@ -55,7 +57,7 @@ static double rdf_difference(const char *ours, const char *theirs) {
         assert_int_equal(sscanf(line, "%lf %lf", &r, &g), 2);
         assert_non_null(fgets(other, sizeof other, second));
         assert_int_equal(sscanf(other, "%*d %lf %lf", &their_r, &their_g), 2);
-        assert_true(fabs(their_r - 4.65 * r) < 1e-5); // the same bins, in A
+        assert_true(fabs(their_r - unit * r) < 1e-5); // the same bins
         squares += (g - their_g) * (g - their_g);
         rows++;
     }
@@ -108,7 +110,7 @@ static void test_lammps_has_our_water(void **state) {
                                 : "cd lammps && lmp -in in.mesofit -var equilibration 500 "
                                   "-var steps 2000 >lmp.out 2>&1"),
                      0);
-    const double difference = rdf_difference("out/rdf.tsv", "lammps/rdf.dat");
+    const double difference = rdf_difference("out/rdf.tsv", "lammps/rdf.dat", 4.65); // A
     double error;
     const double temperature = mean_of("lammps/thermo.dat", 1, &error);
     print_message("rms of g - ours: %.4f; T %.2f(%.2f) K\n", difference, temperature, error);
@@ -123,9 +125,113 @@ static void test_lammps_has_our_water(void **state) {
     assert_true(fabs(pressure - ours) < 4.5 * hypot(error, our_error));
 }
 
+enum { BEADS = 192, FRAMES = 1001, BLOCKS = 8 };
+static const double edge = 4, window = 2;
+
+/// Between frames, every five steps of those that the export has chosen.
+static double find_interval(void) {
+    char *text = temporary_folder_read("lammps/in.mesofit");
+    const char *at = strstr(text, "\ntimestep ");
+    assert_non_null(at);
+    const double step = strtod(at + strlen("\ntimestep "), NULL);
+    free(text);
+    return 5 * step;
+}
+
+/// Positions of all frames of a dump without walls.
+static void read_dump(const char *file, double (*place)[BEADS][3]) {
+    FILE *stream = fopen(file, "r");
+    char line[512];
+    assert_non_null(stream);
+    for (int frame = 0; frame < FRAMES; frame++) {
+        for (int k = 0; k < 9; k++)
+            assert_non_null(fgets(line, sizeof line, stream));
+        for (int k = 0; k < BEADS; k++) {
+            int id;
+            double x[3];
+            assert_non_null(fgets(line, sizeof line, stream));
+            assert_int_equal(sscanf(line, "%d %*d %lf %lf %lf", &id, &x[0], &x[1], &x[2]), 4);
+            for (int d = 0; d < 3; d++) {
+                const double before = frame > 0 ? place[frame - 1][id - 1][d] : x[d];
+                place[frame][id - 1][d] = x[d] + edge * round((before - x[d]) / edge);
+            }
+        }
+    }
+    fclose(stream);
+}
+
+/// D by least squares of the MSD, over the second half of the window as ours.
+static double slope_of(double interval, double (*place)[BEADS][3], int frames) {
+    double n = 0, sum_t = 0, sum_m = 0, sum_tt = 0, sum_tm = 0;
+    const int lags = (int)lround(window / interval);
+    for (int lag = lags / 2; lag <= lags; lag++) {
+        double squares = 0;
+        for (int f = 0; f + lag < frames; f++)
+            for (int k = 0; k < BEADS; k++)
+                for (int d = 0; d < 3; d++)
+                    squares += pow(place[f + lag][k][d] - place[f][k][d], 2);
+        const double t = lag * interval, msd = squares / (frames - lag) / BEADS;
+        n++, sum_t += t, sum_m += msd, sum_tt += t * t, sum_tm += t * msd;
+    }
+    return (n * sum_tm - sum_t * sum_m) / (n * sum_tt - sum_t * sum_t) / 6;
+}
+
+/// That of a dump, and its error by blocks of time.
+static double diffusion_of(const char *file, double *error) {
+    static double place[FRAMES][BEADS][3];
+    const double interval = find_interval();
+    double sum = 0, squares = 0;
+    read_dump(file, place);
+    for (int b = 0; b < BLOCKS; b++) {
+        const double d = slope_of(interval, place + b * (FRAMES / BLOCKS), FRAMES / BLOCKS);
+        sum += d / BLOCKS, squares += d * d / BLOCKS;
+    }
+    *error = sqrt((squares - sum * sum) / (BLOCKS - 1));
+    return sum;
+}
+
+/// False alarms as above. At this step LAMMPS moves up to 4 per cent faster: it takes friction at
+/// velocities of half a step ago.
+static void test_lammps_has_our_friction(void **state) {
+    static struct run_program_result result;
+    static const char scene[] =
+        "{\"seed\": 3, \"box\": [4, 4, 4], \"particles\": {\"count\": 192}, \"time_step\": 0.01,\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"exponent\": 0.5},\n"
+        "\"rdf\": {\"range\": 2, \"bins\": 100}, \"motion\": {\"lags\": 40, \"every\": 5},\n"
+        "\"measure\": {\"equilibration\": 500, \"samples\": 500, \"every\": 10}}\n";
+    skip_without_lammps();
+    if (system("lmp -h | grep -q 'dpd/ext/tstat'") != 0) {
+        print_message("lmp lacks the package DPD-BASIC: its friction is not run\n");
+        skip();
+    }
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "the lmp of this machine has it");
+    assert_int_equal(
+        system("cd lammps && lmp -in in.mesofit -var equilibration 500 -var steps 5000 "
+               "-var dump 5 >lmp.out 2>&1"),
+        0);
+    double error;
+    const double difference = rdf_difference("out/rdf.tsv", "lammps/rdf.dat", 1);
+    const double temperature = mean_of("lammps/thermo.dat", 1, &error);
+    print_message("rms of g - ours: %.4f; T %.4f(%.4f)\n", difference, temperature, error);
+    assert_true(difference < 0.03 && fabs(temperature - 1) < 4.5 * error + 0.01);
+    const double ours = results_number("out/summary.json", "motion.diffusion_msd");
+    const double our_error = results_number("out/summary.json", "motion.diffusion_msd_error");
+    const double theirs = diffusion_of("lammps/dump.lammpstrj", &error);
+    print_message("D %.4f(%.4f), ours %.4f(%.4f)\n", theirs, error, ours, our_error);
+    error = fmax(error, our_error); // of few blocks it is rough, and theirs is the shorter run
+    assert_true(fabs(theirs - ours) < 4.5 * hypot(error, our_error) + 0.04 * ours);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {TEST(test_lammps_has_our_water)};
+    const struct CMUnitTest tests[] = {TEST(test_lammps_has_our_water),
+                                       TEST(test_lammps_has_our_friction)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
