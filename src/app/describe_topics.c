@@ -137,7 +137,9 @@ static const struct topic fixed_topics[] = {
      {mf_heading_fields, mf_fit_friction_fields}},
     {"files",
      "scene",
-     "the top of a scene file, and \"scene\" of a run file (without title and seed)",
+     "the top of a scene file, for `mesofit simulate`, and \"scene\" of a run file (without title "
+     "and "
+     "seed)",
      {mf_heading_fields, mf_scene_fields, mf_scene_density_fields}},
     {"files",
      "particles",
