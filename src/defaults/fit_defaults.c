@@ -328,7 +328,8 @@ static enum status choose_simulation(struct fit_choice *c) {
     const bool joined = scene_has_molecules(&c->read->scene.molecules);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         c->finds[kind] = c->read->unknown[kind].wanted;
-    TRY(choose_cutoff(c));
+    if (joined)
+        TRY(choose_cutoff(c));
     TRY(choose_count(c));
     TRY(choose_time_step(c));
     TRY(choose_friction(c));

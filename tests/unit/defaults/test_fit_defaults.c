@@ -172,7 +172,7 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
                                         "\"power\", \"sigma\": 3}, ",
                                         "\"dissipative_transverse\": {\"law\": \"power\", "
                                         "\"sigma\": 3}, "};
-    static const size_t choices[] = {3, 2, 1, 2}; // the cutoff among them
+    static const size_t choices[] = {2, 1, 0, 1};
     write_target(state, 0.002);
     for (int k = 0; k < 4; k++) {
         struct fit_file fit;
@@ -185,7 +185,7 @@ static void test_fit_defaults_choose_friction_and_time_step_beside_a_method(void
         if (k != 1)
             assert_identical(fit.scene.setup.time_step, k == 2 ? 0.01 : 0.02);
         assert_int_equal(fit.verification.plan.samples, 50);
-        assert_close(mf_rdf_bins_range(&fit.problem.targets.bins), 2 * pow(0.3, -1.0 / 3), 0.15);
+        assert_int_equal(fit.problem.targets.bins.count, 150);
         mf_fit_file_clear(&fit);
     }
 }
@@ -200,7 +200,7 @@ static void test_fit_defaults_choose_how_many_beads_beside_a_method(void **state
                        "{\"law\": \"power\", \"sigma\": 3}}, \"method\": {\"name\": \"ibi\"}, "
                        "\"verification\": {\"replicas\": 2, \"equilibration\": 10, \"every\": 2, "
                        "\"samples\": 10}}"));
-    assert_int_equal(fit.choices.count, 2); // the cutoff is the other one
+    assert_int_equal(fit.choices.count, 1);
     assert_int_equal(fit.scene.setup.placement.count, 1000);
     mf_fit_file_clear(&fit);
 }
@@ -286,21 +286,21 @@ static void test_fit_defaults_join_fine_rows_and_end_g_with_its_structure(void *
         assert_ok(read_run(state, &fit, "run.json", run));
         const struct rdf_bins *bins = &fit.problem.targets.bins;
         print_message("%zu bins of %g\n", bins->count, bins->width);
-        // 10 exp(−4 r²) = 0.03 at r = 1.2; two spacings are 3.
-        assert_close(mf_rdf_bins_range(bins), 2 * pow(0.3, -1.0 / 3), 0.15);
-        if (given) { // a file with a method: 400 up to the end of the table
-            assert_close(bins->width, 0.01, 1e-6);
+        if (given) { // a file with a method: no more than 400
+            assert_int_equal(bins->count, 400);
         } else {
             // Cubics through bins of 0.1 are off by 3/128 · 0.1⁴ times 1200 at most, 0.003.
             assert_true(bins->width > 0.04 && bins->width < 0.15);
+            // 10 exp(−4 r²) = 0.03 at r = 1.2; two spacings are 3.
+            assert_close(mf_rdf_bins_range(bins), 2 * pow(0.3, -1.0 / 3), 0.15);
         }
         mf_fit_file_clear(&fit);
     }
 }
 
 /// Water's third layer, 1.03 high at 0.68 nm, has forces; the fourth, 1.01 at 0.9 nm, is made by
-/// it, whether the file names a method or not.
-static void end_g_of_water(void **state, const char *method) {
+/// it.
+static void test_fit_defaults_end_g_of_water_behind_its_third_layer(void **state) {
     struct fit_file fit;
     char folder[512], run[1024];
     assert_non_null(getcwd(folder, sizeof folder));
@@ -308,20 +308,14 @@ static void end_g_of_water(void **state, const char *method) {
              "{\"target\": {\"rdf\": {\"file\": \"%s/targets/spce-votca/CG-CG.dist.tgt\", "
              "\"format\": \"votca\"}}, \"scene\": {\"box\": [4.031, 4.031, 4.031], \"particles\": "
              "{\"count\": 2180}, \"units\": {\"length\": 1, \"temperature\": 300, \"mass\": "
-             "2.992e-26}}%s}",
-             folder, method);
+             "2.992e-26}}}",
+             folder);
     assert_ok(read_run(state, &fit, "run.json", run));
     const struct rdf_bins *bins = &fit.problem.targets.bins;
     print_message("%zu bins of %g to %g\n", bins->count, bins->width, mf_rdf_bins_range(bins));
     assert_true(mf_rdf_bins_range(bins) > 0.68 && mf_rdf_bins_range(bins) < 0.8);
-    if (method[0] == '\0')
-        assert_close(bins->width, 0.01, 1e-6); // its peak has four rows and no row to spare
+    assert_close(bins->width, 0.01, 1e-6); // its peak has four rows and no row to spare
     mf_fit_file_clear(&fit);
-}
-
-static void test_fit_defaults_end_g_of_water_behind_its_third_layer(void **state) {
-    end_g_of_water(state, "");
-    end_g_of_water(state, ", \"method\": {\"name\": \"imc\"}");
 }
 
 /// Escape times ask for ω, too, and for a time step that divides their interval; bins come from the
