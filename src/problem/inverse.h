@@ -156,9 +156,9 @@ struct inverse_problem {
     struct unknown unknown[UNKNOWNS];
     size_t numbers;
     struct inverse_number number[INVERSE_MAX_NUMBERS];
-    struct inverse_law law[UNKNOWNS]; ///< those of the scene that are known
+    struct inverse_law law[UNKNOWNS];          ///< those of the scene that are known
     struct inverse_law weight, density_energy; ///< of its local densities, a curve for each
-    size_t bonded;                    ///< groups of which U(q) is to be found
+    size_t bonded;                             ///< groups of which U(q) is to be found
     struct bonded_unknown group[INVERSE_MAX_BONDED];
     const char *mode[PAIR_MEMORY_MAX_MODES]; ///< names of the modes of memory; borrowed
     struct simulation_setup scene;           ///< all but the unknowns; its composition is set
