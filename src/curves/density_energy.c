@@ -29,7 +29,7 @@ static double or_one(double scale) {
 // Polynomials -------------------------------------------------------------------------------------
 
 struct polynomial {
-    double term[DENSITY_ENERGY_TERMS];
+    double term[DENSITY_ENERGY_TERMS], origin;
     struct scales scales;
 };
 
@@ -37,10 +37,16 @@ static void polynomial_scale(void *parameters, double density, double unit) {
     ((struct polynomial *)parameters)->scales = (struct scales){density, unit};
 }
 
-/// The coefficients in reduced units.
+/// The coefficients of powers of ρ in reduced units: those of (ρ − ρ_o)^n by Pascal's triangle.
 static void polynomial_terms(const struct polynomial *p, double term[DENSITY_ENERGY_TERMS]) {
-    for (int n = 0; n < DENSITY_ENERGY_TERMS; n++)
-        term[n] = p->term[n] * pow(or_one(p->scales.density), n + 1) / or_one(p->scales.unit);
+    for (int k = 0; k < DENSITY_ENERGY_TERMS; k++) {
+        double sum = 0, choose = 1; // n over k
+        for (int n = k; n < DENSITY_ENERGY_TERMS; n++) {
+            sum += choose * p->term[n] * pow(-p->origin, n - k);
+            choose *= (n + 2) / (double)(n + 1 - k);
+        }
+        term[k] = sum * pow(or_one(p->scales.density), k + 1) / or_one(p->scales.unit);
+    }
 }
 
 static double polynomial_sum(const double term[DENSITY_ENERGY_TERMS], double x, double *slope) {
@@ -68,15 +74,23 @@ static double endless(const void *parameters) {
 
 #define TERM(n, name, power)                                                                       \
     {                                                                                              \
-        name, FIELD_NUMBER, offsetof(struct polynomial, term[n]),                                  \
-            .initial = 0, ANY_NUMBER, .unit = "", .help = "of rho" power                           \
+        name, FIELD_NUMBER, offsetof(struct polynomial, term[n]), .initial = 0, ANY_NUMBER,        \
+                                                                  .unit = "", .help = "of x" power \
     }
 static const struct field polynomial_fields[] = {
-    TERM(0, "c1", ""), TERM(1, "c2", "^2"), TERM(2, "c3", "^3"), TERM(3, "c4", "^4"), FIELD_END};
+    TERM(0, "c1", ""),
+    TERM(1, "c2", "^2"),
+    TERM(2, "c3", "^3"),
+    TERM(3, "c4", "^4"),
+    {"origin", FIELD_NUMBER, .offset = offsetof(struct polynomial, origin), .initial = 0,
+     ANY_NUMBER, .unit = "", .help = "rho_o, best the mean of rho in a fit"},
+    FIELD_END,
+};
 
 const struct curve_family mf_density_energy_polynomial = {
     .name = "polynomial",
-    .summary = "c1 rho + c2 rho^2 + c3 rho^3 + c4 rho^4, in units of the file",
+    .summary = "c1 x + c2 x^2 + c3 x^3 + c4 x^4, x = rho - origin, less its value at rho = 0; in "
+               "units of the file",
     .fields = polynomial_fields,
     .size = sizeof(struct polynomial),
     .value = polynomial_value,

@@ -10,7 +10,9 @@
 
 #include "curves/table.h"
 
-/// f = c_1 ρ + c_2 ρ² + c_3 ρ³ + c_4 ρ⁴.
+/// f = c_1 x + c_2 x² + c_3 x³ + c_4 x⁴, x = ρ − ρ_o, less its value at ρ = 0: a bead alone has no
+/// energy. About the mean density of a liquid the coefficients do not share what they do to it:
+/// there c_1 is the mean force of all neighbours, and c_2 how it follows the density.
 extern const struct curve_family mf_density_energy_polynomial;
 
 /// f = π B r_c⁴ ρ²/30, in two dimensions π B r_c³ ρ²/24: with the weight "many-body-dpd" the force

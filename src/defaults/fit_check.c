@@ -169,16 +169,17 @@ static enum status check_single_beads(const struct fit_file *fit, const char *fi
     return STATUS_OK;
 }
 
-/// An inversion samples pairs and molecules alone.
+/// An inversion samples pairs, molecules and local densities alone.
 static enum status check_interactions(const struct fit_file *fit, const char *file) {
-    const int others = fit->scene.setup.interactions - scene_has_molecules(&fit->scene.molecules);
+    const int others = fit->scene.setup.interactions - scene_has_molecules(&fit->scene.molecules) -
+                       (fit->scene.many_body.law != NULL);
     if (fit->method->kind != INVERSE_INVERSION || others == 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: scene.%s: \"%s\" samples only pairs and molecules; use a "
-                          "method that simulates candidates, such as \"gauss-newton\"",
-                          file, fit->scene.many_body.law ? "many_body" : "interactions",
-                          fit->method->name);
+                          "%s: scene.interactions: \"%s\" samples only pairs, molecules and "
+                          "\"many_body\"; use a method that simulates candidates, such as "
+                          "\"gauss-newton\"",
+                          file, fit->method->name);
 }
 
 /// Without velocities there is no VACF to be measured, and without time nothing that needs it.

@@ -211,10 +211,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
     problem->scene.cancel = options->stop;
     problem->numbers = fit->numbers;
     memcpy(problem->number, fit->number, sizeof problem->number);
-    for (int place = 0; place < UNKNOWN_BONDED; place++) {
-        const struct scene_law *law = mf_fit_numbers_law(&fit->scene, place);
-        problem->law[place] = (struct inverse_law){law->curves, law->curve};
-    }
+    mf_fit_numbers_lend(&fit->scene, problem);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const struct fit_unknown *from = &fit->unknown[kind];
         struct unknown *unknown = &problem->unknown[kind];

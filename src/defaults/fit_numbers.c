@@ -133,6 +133,42 @@ static void add_memory(struct entries *entries, const struct scene_memory *memor
     }
 }
 
+/// Where the potential of pairs is unknown, a share of it is no unknown of its own: the slope of f
+/// at the origin stays what the scene says.
+static void fix_share_of_pairs(struct entries *entries, const struct scene *scene) {
+    static const char name[] = ".energy.c1";
+    for (size_t k = 0; entries->entry && k < entries->count; k++) {
+        struct entry *entry = &entries->entry[k];
+        const size_t length = strlen(entry->path);
+        if ((scene->unknown & SCENE_FITS_POTENTIAL) && length > strlen(name) &&
+            entry->place == INVERSE_OF_DENSITY_ENERGY &&
+            strcmp(entry->path + length - strlen(name), name) == 0)
+            entry->fixed = "it is a potential of pairs, 2 c1 w(r), and so a part of the unknown "
+                           "potential; what the scene says stays";
+    }
+}
+
+/// Laws of local densities: "many_body.cohesion.energy.c2".
+static void add_densities(struct entries *entries, const struct scene *scene) {
+    const struct scene_many_body *many_body = &scene->many_body;
+    for (int t = 0; many_body->law && t < many_body->law->terms; t++) {
+        const struct {
+            const char *key;
+            const struct curve *curve;
+            enum inverse_place place;
+        } laws[] = {{"weight", &many_body->weight[t], INVERSE_OF_WEIGHT},
+                    {"energy", &many_body->energy[t], INVERSE_OF_DENSITY_ENERGY}};
+        for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+            char prefix[INVERSE_NUMBER_NAME_SIZE];
+            snprintf(prefix, sizeof prefix, "many_body.%s.%s.", many_body->law->term[t].name,
+                     laws[k].key);
+            add(entries, prefix, laws[k].curve->family->fields, NULL,
+                &(struct entry){.place = laws[k].place, .part = t}, laws[k].curve->parameters);
+        }
+    }
+    fix_share_of_pairs(entries, scene);
+}
+
 /// Laws of bonds, angles and dihedrals: "bonds.backbone.k".
 static void add_groups(struct entries *entries, const struct molecules *molecules) {
     for (int order = 0; order < BONDED_KINDS; order++)
@@ -146,7 +182,8 @@ static void add_groups(struct entries *entries, const struct molecules *molecule
         }
 }
 
-const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inverse_place place) {
+/// A law of pairs by its place.
+static const struct scene_law *law_of(const struct scene *scene, enum inverse_place place) {
     switch (place) {
     case INVERSE_OF_POTENTIAL:
         return &scene->potential;
@@ -157,6 +194,17 @@ const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inver
     default:
         return &scene->memory.omega[place - INVERSE_OF_MEMORY];
     }
+}
+
+void mf_fit_numbers_lend(const struct scene *scene, struct inverse_problem *problem) {
+    const struct scene_many_body *many_body = &scene->many_body;
+    const int densities = many_body->law ? many_body->law->terms : 0;
+    for (int place = 0; place < UNKNOWN_BONDED; place++) {
+        const struct scene_law *law = law_of(scene, place);
+        problem->law[place] = (struct inverse_law){law->curves, law->curve};
+    }
+    problem->weight = (struct inverse_law){densities, many_body->weight};
+    problem->density_energy = (struct inverse_law){densities, many_body->energy};
 }
 
 static void list(struct entries *entries, const struct scene *scene) {
@@ -174,6 +222,7 @@ static void list(struct entries *entries, const struct scene *scene) {
         add(entries, "dynamics.", setup->integrator->fields, NULL, &dynamics,
             setup->integrator_parameters);
     add_groups(entries, &scene->molecules.molecules);
+    add_densities(entries, scene);
     for (int k = 0; k < setup->interactions; k++) {
         const struct interaction_choice *choice = &setup->interaction[k];
         if (choice->kind->fields == NULL) // their numbers are those of their laws
@@ -325,7 +374,7 @@ static enum status check_corners(struct json_object *numbers, const struct curve
     return STATUS_OK;
 }
 
-static enum status check_law(struct json_object *numbers, const struct scene_law *law,
+static enum status check_law(struct json_object *numbers, const struct inverse_law *law,
                              enum inverse_place place, const struct inverse_number *number,
                              size_t count) {
     for (int pair = 0; pair < law->curves; pair++) {
@@ -338,6 +387,16 @@ static enum status check_law(struct json_object *numbers, const struct scene_law
             TRY(check_corners(numbers, &law->curve[pair], own, found));
     }
     return STATUS_OK;
+}
+
+static enum status check_laws(struct json_object *numbers, const struct scene *scene,
+                              const struct inverse_number *number, size_t count) {
+    struct inverse_problem laws = {0};
+    mf_fit_numbers_lend(scene, &laws);
+    for (int place = 0; place < UNKNOWN_BONDED; place++)
+        TRY(check_law(numbers, &laws.law[place], place, number, count));
+    TRY(check_law(numbers, &laws.weight, INVERSE_OF_WEIGHT, number, count));
+    return check_law(numbers, &laws.density_energy, INVERSE_OF_DENSITY_ENERGY, number, count);
 }
 
 enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene *scene,
@@ -356,10 +415,8 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
     CHECK(read_all(&numbers, scene, &entries, number, count));
     if (*count == 0 && mf_json_fault_count(unknowns->document) == 0)
         mf_json_fault(unknowns, "numbers", "names none");
-    if (mf_json_fault_count(unknowns->document) == 0) {
-        for (int place = 0; place < UNKNOWN_BONDED; place++)
-            CHECK(check_law(&numbers, mf_fit_numbers_law(scene, place), place, number, *count));
-    }
+    if (mf_json_fault_count(unknowns->document) == 0)
+        CHECK(check_laws(&numbers, scene, number, *count));
     mf_json_finish(&numbers);
 done:
     mf_memory_free(entries.entry);

@@ -14,8 +14,8 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
                                 struct inverse_number number[INVERSE_MAX_NUMBERS],
                                 size_t *count) MUST_USE;
 
-/// A law of the scene by its place.
-const struct scene_law *mf_fit_numbers_law(const struct scene *scene, enum inverse_place place);
+/// Lend a problem the laws of the scene that numbers may belong to.
+void mf_fit_numbers_lend(const struct scene *scene, struct inverse_problem *problem);
 
 /// Write them back, with the values that they begin with.
 void mf_fit_numbers_write(const struct inverse_number *number, size_t count,

@@ -18,8 +18,8 @@ static const double wanted_acceptance = 0.9, gain = 0.05;
 
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct composition *composition, const struct table *potential,
-                           const struct molecules *molecules, const struct pair_histogram *bins,
-                           double temperature, uint64_t seed) {
+                           const struct molecules *molecules, const struct many_body *many_body,
+                           const struct pair_histogram *bins, double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)mf_composition_particles(composition);
     const struct hybrid_step step = mf_hybrid_step_find(potential, molecules, temperature);
@@ -42,6 +42,9 @@ enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
     if (molecules)
         setup.interaction[setup.interactions++] =
             (struct interaction_choice){&mf_molecules, molecules};
+    if (many_body)
+        setup.interaction[setup.interactions++] =
+            (struct interaction_choice){&mf_many_body, many_body};
     *hybrid = (struct hybrid){.trial = *bins, .longest = step.longest};
     NEW_ARRAY(hybrid->trial.counts, NEIGHBOURS_MAX_PARTS * (pair_histogram_size(bins)));
     NEW_ARRAY(hybrid->kept, pair_histogram_size(bins));

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "dynamics/simulation.h"
+#include "forces/many_body.h"
 #include "forces/molecules.h"
 
 /// Time steps of a trajectory.
@@ -33,13 +34,15 @@ struct hybrid {
 /// Particles on a lattice in `box`, mixed at random.
 /// @param[in] potential  borrowed; may be exchanged before mf_hybrid_refresh
 /// @param[in] molecules  borrowed, and so may their laws be; NULL: single particles
+/// @param[in] many_body  energies of local densities, borrowed; NULL: none
 /// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read. None:
 ///                       no pairs are
 /// Fails: as mf_simulation_init.
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct composition *composition, const struct table *potential,
-                           const struct molecules *molecules, const struct pair_histogram *bins,
-                           double temperature, uint64_t seed) MUST_USE;
+                           const struct molecules *molecules, const struct many_body *many_body,
+                           const struct pair_histogram *bins, double temperature,
+                           uint64_t seed) MUST_USE;
 void mf_hybrid_clear(struct hybrid *hybrid);
 
 /// Place the particles again, without order; molecules as a scene does. Fails: NO_MEMORY,

@@ -121,7 +121,7 @@ static enum status place_molecules(struct metropolis *metropolis) {
     const struct pair_law *law = &metropolis->law;
     struct hybrid hybrid;
     TRY(mf_hybrid_init(&hybrid, &metropolis->particles.box, &law->composition, law->potential,
-                       metropolis->molecules.molecules, &(struct pair_histogram){0},
+                       metropolis->molecules.molecules, NULL, &(struct pair_histogram){0},
                        law->temperature, metropolis->seed));
     const enum status status = take_places(metropolis, &hybrid.simulation.particles);
     mf_hybrid_clear(&hybrid);

@@ -321,10 +321,7 @@ static enum status apply_numbers(struct reading *reading) {
     struct export_model *model = reading->model;
     struct inverse_problem problem = {.numbers = reading->numbers, .scene = model->setup}, changed;
     memcpy(problem.number, reading->number, sizeof problem.number);
-    for (int kind = 0; kind < UNKNOWN_BONDED; kind++) {
-        const struct scene_law *law = mf_fit_numbers_law(&model->scene, kind);
-        problem.law[kind] = (struct inverse_law){law->curves, law->curve};
-    }
+    mf_fit_numbers_lend(&model->scene, &problem);
     TRY(mf_numbers_apply(&problem, reading->value, &changed, &model->own));
     model->setup = changed.scene;
     return STATUS_OK;

@@ -31,6 +31,14 @@ void mf_many_body_clear(struct many_body *many_body) {
     *many_body = (struct many_body){0};
 }
 
+const struct many_body *mf_many_body_find(const struct interaction_choice *interactions,
+                                          int count) {
+    for (int k = 0; k < count; k++)
+        if (interactions[k].kind == &mf_many_body)
+            return interactions[k].parameters;
+    return NULL;
+}
+
 static double range_of(const void *parameters) {
     const struct many_body *many_body = parameters;
     double range = 0;

@@ -34,6 +34,9 @@ struct many_body {
 
 void mf_many_body_clear(struct many_body *many_body);
 
+/// Those among the interactions of a scene, or NULL.
+const struct many_body *mf_many_body_find(const struct interaction_choice *interactions, int count);
+
 /// What a term was found to do beyond the ends of its table since the begin, in one line that names
 /// it; false: nothing.
 /// @param[in] state  of the interaction

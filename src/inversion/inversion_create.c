@@ -15,7 +15,7 @@ const struct field mf_inversion_fields[] = {
     {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = mf_sampler_kinds, .initial = SAMPLER_AUTO,
      .unit = "",
      .help = "Metropolis moves or hybrid Monte Carlo; auto: moves of single beads, hybrid of "
-             "molecules"},
+             "molecules and with \"many_body\""},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MAX, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 64, .minimum = 0,

@@ -36,6 +36,17 @@ static enum status choose_size(struct inversion_state *state) {
         (long long)mf_composition_min_particles(&scene->composition, wanted, max_distortion));
 }
 
+/// Local densities act by their forces alone.
+static enum status refuse_moves(const struct inversion_state *state) {
+    const struct simulation_setup *scene = &state->problem->scene;
+    if (state->parameters->sampler != SAMPLER_MONTE_CARLO ||
+        mf_many_body_find(scene->interaction, scene->interactions) == NULL)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "method.sampler: \"monte-carlo\" moves beads by energies of pairs, and "
+                          "does not sample \"many_body\"; \"dynamics\" and \"auto\" do, exactly");
+}
+
 /// No potential of pairs empties a shell in the midst of a liquid: an empty bin beyond one that is
 /// well known is a fault of the target, and what would be made of it a barrier without an end.
 static enum status refuse_holes(const struct inversion_state *state) {
@@ -93,6 +104,7 @@ enum status mf_inversion_state_init(struct inversion_state *state,
     state->parameters = parameters;
     state->gradient = INFINITY;
     TRY(choose_size(state));
+    TRY(refuse_moves(state));
     TRY(mf_potential_grid_init(&state->grid, problem));
     state->bins = state->grid.all_bins;
     TRY(refuse_holes(state));
@@ -127,6 +139,11 @@ enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
     const struct rdf_bins *bins = &problem->targets.bins;
     const bool joined = mf_molecules_find(scene->interaction, scene->interactions) != NULL;
     const bool pairs = state->grid.pairs > 0;
+    const struct many_body *many_body = mf_many_body_find(scene->interaction, scene->interactions);
+    if (many_body) {
+        state->interaction.many_body = *many_body;
+        state->interaction.many_body.composition = state->composition;
+    }
     TRY(mf_inversion_tabulate(state));
     // What one cannot sample none can: molecules take long to be placed.
     return mf_replicas_init(
@@ -140,6 +157,7 @@ enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
                                  .width = bins->width,
                                  .bins = pairs ? bins->count : 0,
                                  .molecules = joined ? &state->interaction.molecules : NULL,
+                                 .many_body = many_body ? &state->interaction.many_body : NULL,
                                  .group = state->groups,
                                  .groups = state->grid.groups,
                                  .integrals = state->kirkwood_buff.pairs,

@@ -38,7 +38,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) {
     enum status status = STATUS_OK;
     if (kind == SAMPLER_AUTO)
-        kind = system->molecules ? SAMPLER_DYNAMICS : SAMPLER_MONTE_CARLO;
+        kind = system->molecules || system->many_body ? SAMPLER_DYNAMICS : SAMPLER_MONTE_CARLO;
     *sampler =
         (struct sampler){.kind = kind,
                          .molecules = system->molecules,
@@ -53,8 +53,8 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
         CHECK(mf_whole_molecules_init(&sampler->whole, &system->molecules->topology));
     if (sampler->kind == SAMPLER_DYNAMICS) {
         CHECK(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
-                             system->molecules, &sampler->histogram, system->temperature,
-                             system->seed));
+                             system->molecules, system->many_body, &sampler->histogram,
+                             system->temperature, system->seed));
         sampler->hybrid.simulation.setup.cancel = system->cancel;
         return STATUS_OK;
     }

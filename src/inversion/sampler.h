@@ -15,7 +15,7 @@
 enum sampler_kind {
     SAMPLER_MONTE_CARLO,
     SAMPLER_DYNAMICS,
-    SAMPLER_AUTO ///< single beads by moves, molecules by dynamics
+    SAMPLER_AUTO ///< single beads by moves, molecules and local densities by dynamics
 };
 
 /// Names in the order of enum sampler_kind, NULL-terminated.
@@ -51,6 +51,7 @@ struct sampler_system {
     double low, width; ///< of the bins that count pairs, within the potential's cutoff [λ]
     size_t bins;       ///< of each pair type; 0: pairs are not counted
     const struct molecules *molecules; ///< or NULL; its laws may be exchanged as the potential may
+    const struct many_body *many_body; ///< or NULL; of SAMPLER_DYNAMICS alone
     const struct sampler_group *group; ///< to be counted after the pairs, shape [groups]
     size_t groups;
     size_t integrals; ///< of Kirkwood and Buff: pairs of components, if they are asked for, or 0

@@ -99,6 +99,8 @@ static enum status refuse(const struct inverse_method *method,
                           const struct inverse_problem *problem) {
     const char *why = NULL;
     size_t of_omega = 0;
+    const bool has_densities =
+        mf_many_body_find(problem->scene.interaction, problem->scene.interactions) != NULL;
     for (int target = 0; target < TARGETS; target++)
         of_omega += targets_ask(&problem->targets, target) && !is_of_potential(target);
     if (!problem->unknown[UNKNOWN_POTENTIAL].wanted || !problem->unknown[UNKNOWN_OMEGA].wanted ||
@@ -106,8 +108,9 @@ static enum status refuse(const struct inverse_method *method,
         why = "finds a potential and omega, and nothing else";
     else if (of_omega == 0)
         why = "finds omega from a target of motion, as \"etd\", that is fitted";
-    else if (problem->scene.interactions > 0)
-        why = "fits only systems of pair potentials: leave out \"interactions\"";
+    else if (problem->scene.interactions > (int)has_densities)
+        why = "fits only single beads with potentials of pairs and \"many_body\": leave out "
+              "\"interactions\"";
     return why == NULL
                ? STATUS_OK
                : mf_status_fail(STATUS_BAD_INPUT, "method.name: \"%s\" %s", method->name, why);

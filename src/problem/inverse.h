@@ -81,7 +81,7 @@ struct unknown {
 };
 
 /// Where a number of a scene stands: in a curve of a law that is known, in the law of a group of
-/// bonds, angles or dihedrals, or in the setup.
+/// bonds, angles or dihedrals, in a law of local densities, or in the setup.
 enum inverse_place {
     INVERSE_OF_POTENTIAL = UNKNOWN_POTENTIAL,
     INVERSE_OF_OMEGA = UNKNOWN_OMEGA,
@@ -91,6 +91,8 @@ enum inverse_place {
     INVERSE_OF_SETUP = UNKNOWNS,
     INVERSE_OF_DYNAMICS,
     INVERSE_OF_INTERACTION,
+    INVERSE_OF_WEIGHT, ///< w of a local density, and f of it
+    INVERSE_OF_DENSITY_ENERGY,
 };
 
 enum { INVERSE_MAX_NUMBERS = 16, INVERSE_NUMBER_NAME_SIZE = 96 };
@@ -102,7 +104,8 @@ struct inverse_number {
     double minimum, maximum;             ///< its range
     double start;                        ///< to begin with
     enum inverse_place place;
-    int part;      ///< curve of the law, which of the interactions, or inverse_group of a group
+    int part;      ///< curve of the law, which of the interactions or of the local densities, or
+                   ///< inverse_group of a group
     size_t offset; ///< in the parameters of that, or in struct simulation_setup
 };
 
@@ -153,8 +156,9 @@ struct inverse_problem {
     struct unknown unknown[UNKNOWNS];
     size_t numbers;
     struct inverse_number number[INVERSE_MAX_NUMBERS];
-    struct inverse_law law[UNKNOWNS]; ///< those of the scene that are known
-    size_t bonded;                    ///< groups of which U(q) is to be found
+    struct inverse_law law[UNKNOWNS];          ///< those of the scene that are known
+    struct inverse_law weight, density_energy; ///< of its local densities, a curve for each
+    size_t bonded;                             ///< groups of which U(q) is to be found
     struct bonded_unknown group[INVERSE_MAX_BONDED];
     const char *mode[PAIR_MEMORY_MAX_MODES]; ///< names of the modes of memory; borrowed
     struct simulation_setup scene;           ///< all but the unknowns; its composition is set

@@ -24,26 +24,35 @@ void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS])
         fields[k].unit = unit;
 }
 
+/// A curve of a place with these values.
+/// @param[out] curve  to be freed with its parameters
+static enum status put(const struct inverse_problem *problem, enum inverse_place place, int part,
+                       const struct curve *from, const double *value, struct curve *curve) {
+    *curve = (struct curve){from->family, NULL};
+    curve->parameters = mf_memory_zeroed(1, from->family->size);
+    if (curve->parameters == NULL)
+        return STATUS_NO_MEMORY;
+    memcpy(curve->parameters, from->parameters, from->family->size);
+    for (size_t n = 0; n < problem->numbers; n++) {
+        const struct inverse_number *number = &problem->number[n];
+        if (number->place == place && number->part == part)
+            memcpy((char *)curve->parameters + number->offset, &value[n], sizeof value[n]);
+    }
+    return STATUS_OK;
+}
+
 /// The curves of a law with these values, one table for all of them.
 static enum status tabulate(const struct inverse_problem *problem, enum inverse_place kind,
                             const double *value, struct table *table) {
     enum status status = STATUS_OK;
     const struct inverse_law *law = &problem->law[kind];
     struct table part[COMPOSITION_MAX_PAIRS] = {{0}};
-    unsigned char *parameters = NULL;
+    struct curve curve = {0};
     for (int pair = 0; pair < law->curves; pair++) {
-        const struct curve_family *family = law->curve[pair].family;
-        if (family == NULL)
+        if (law->curve[pair].family == NULL)
             continue;
-        mf_memory_free(parameters);
-        NEW_ARRAY(parameters, family->size);
-        memcpy(parameters, law->curve[pair].parameters, family->size);
-        for (size_t n = 0; n < problem->numbers; n++) {
-            const struct inverse_number *number = &problem->number[n];
-            if (number->place == kind && number->part == pair)
-                memcpy(parameters + number->offset, &value[n], sizeof value[n]);
-        }
-        const struct curve curve = {family, parameters};
+        mf_memory_free(curve.parameters);
+        CHECK(put(problem, kind, pair, &law->curve[pair], value, &curve));
         CHECK(kind == INVERSE_OF_POTENTIAL ? mf_table_init_potential(&part[pair], &curve)
                                            : mf_table_init_omega(&part[pair], &curve));
     }
@@ -54,7 +63,7 @@ static enum status tabulate(const struct inverse_problem *problem, enum inverse_
         part[0] = (struct table){0};
     }
 done:
-    mf_memory_free(parameters);
+    mf_memory_free(curve.parameters);
     for (int pair = 0; pair < law->curves; pair++)
         mf_table_clear(&part[pair]);
     return status;
@@ -123,6 +132,43 @@ static enum status change_molecules(const struct inverse_problem *problem, const
     return STATUS_OK;
 }
 
+/// The tables of a local density with these values.
+static enum status tabulate_density(const struct inverse_problem *problem, int t,
+                                    const double *value, struct many_body_term *term) {
+    enum status status = STATUS_OK;
+    struct curve weight = {0}, energy = {0};
+    CHECK(put(problem, INVERSE_OF_WEIGHT, t, &problem->weight.curve[t], value, &weight));
+    CHECK(mf_weight_tabulate(&term->weight, &weight));
+    CHECK(put(problem, INVERSE_OF_DENSITY_ENERGY, t, &problem->density_energy.curve[t], value,
+              &energy));
+    CHECK(mf_density_energy_init(&term->energy, &energy));
+done:
+    mf_memory_free(weight.parameters);
+    mf_memory_free(energy.parameters);
+    return status;
+}
+
+/// The scene's local densities, with the numbers of their laws.
+static enum status change_many_body(const struct inverse_problem *problem, const double *value,
+                                    struct simulation_setup *scene, struct numbers_own *own) {
+    for (int k = 0; k < scene->interactions; k++) {
+        struct interaction_choice *choice = &scene->interaction[k];
+        if (choice->kind != &mf_many_body)
+            continue;
+        const struct many_body *from = choice->parameters;
+        own->many_body.composition = from->composition;
+        for (int t = 0; t < from->terms; t++) {
+            struct many_body_term *term = &own->many_body.term[own->many_body.terms++];
+            *term = from->term[t];
+            term->weight = (struct weight_table){0};
+            term->energy = (struct density_energy){0};
+            TRY(tabulate_density(problem, t, value, term));
+        }
+        choice->parameters = &own->many_body;
+    }
+    return STATUS_OK;
+}
+
 const struct table **mf_numbers_table_of(struct simulation_setup *scene, int law) {
     switch (law) {
     case UNKNOWN_POTENTIAL:
@@ -148,6 +194,8 @@ enum status mf_numbers_apply(const struct inverse_problem *problem, const double
         }
     if (concerns(problem, INVERSE_OF_BONDED))
         TRY(change_molecules(problem, value, &changed->scene, own));
+    if (concerns(problem, INVERSE_OF_WEIGHT) || concerns(problem, INVERSE_OF_DENSITY_ENERGY))
+        TRY(change_many_body(problem, value, &changed->scene, own));
     return STATUS_OK;
 }
 
@@ -159,6 +207,7 @@ void mf_numbers_own_clear(struct numbers_own *own) {
     for (int group = 0; group < INVERSE_MAX_BONDED; group++)
         mf_memory_free(own->bonded[group]);
     mf_memory_free(own->dynamics);
+    mf_many_body_clear(&own->many_body);
     *own = (struct numbers_own){0};
 }
 

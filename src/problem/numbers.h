@@ -2,6 +2,7 @@
 /// @file Scalars of a scene that are to be found: the scene with other values of them.
 #pragma once
 
+#include "forces/many_body.h"
 #include "problem/inverse.h"
 
 /// What a run file says of one: struct inverse_number.
@@ -14,13 +15,15 @@ void mf_numbers_fields_of(const char *unit, struct field fields[NUMBERS_FIELDS])
 /// Where a setup has the table of a law, by enum unknown_kind.
 const struct table **mf_numbers_table_of(struct simulation_setup *scene, int law);
 
-/// What is made for values: tables of laws, parameters of the integrator and the interactions, and
-/// the molecules, whose groups have parameters of their own where a number belongs to them.
+/// What is made for values: tables of laws, parameters of the integrator and the interactions, the
+/// molecules, whose groups have parameters of their own where a number belongs to them, and local
+/// densities, all of whose tables are made anew where a number belongs to one of them.
 struct numbers_own {
     struct table table[UNKNOWNS];
     void *dynamics, *interaction[INTERACTION_MAX];
     struct molecules molecules;
     void *bonded[INVERSE_MAX_BONDED]; ///< parameters, by inverse_group
+    struct many_body many_body;
 };
 
 /// The problem whose scene has these values: settings are replaced, and the table of a law with a

@@ -171,17 +171,6 @@ static void test_what_cannot_be_is_refused_in_one_line(void **state) {
 }
 
 /// An inversion would sample another fluid.
-static void test_inversions_refuse_what_they_do_not_sample(void **state) {
-    small_inputs_write(*state, "run.json", small_inputs_run, "\"time_step\": 0.02,",
-                       "\"time_step\": 0.02, \"many_body\": {\"crowd\": {\"weight\": {\"law\": "
-                       "\"lucy\", \"cutoff\": 1}, \"energy\": {\"law\": \"polynomial\"}}},");
-    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
-    run_program_assert_refused(
-        &result, ".", "imc", 1,
-        (const char *const[]){"scene.many_body: \"imc\" samples only pairs and molecules", NULL});
-}
-
 static void test_other_engines_refuse_it(void **state) {
     write_all(*state, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
@@ -200,7 +189,6 @@ int main(void) {
         CASE(test_units_of_a_file_are_those_of_its_densities),
         CASE(test_excluded_pairs_do_not_count),
         CASE(test_what_cannot_be_is_refused_in_one_line),
-        CASE(test_inversions_refuse_what_they_do_not_sample),
         CASE(test_other_engines_refuse_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -299,7 +299,8 @@ static void test_samplers_begin_without_links(void **state) {
     const struct simulation_setup *setup = &melt.fluid.setup;
     struct hybrid hybrid;
     assert_ok(mf_hybrid_init(&hybrid, &setup->box, &melt.composition, setup->potential,
-                             &melt.molecules, &(struct pair_histogram){0}, setup->temperature, 5));
+                             &melt.molecules, NULL, &(struct pair_histogram){0}, setup->temperature,
+                             5));
     check_particles(&melt, &hybrid.simulation.particles);
     assert_ok(mf_hybrid_scatter(&hybrid));
     check_particles(&melt, &hybrid.simulation.particles);

@@ -130,6 +130,29 @@ static void test_energies_follow_the_units_of_the_file(void **state) {
     mf_curve_clear(&curve);
 }
 
+/// The powers about an origin, less the value of a bead alone.
+static void test_polynomials_may_have_an_origin(void **state) {
+    (void)state;
+    static const double c[] = {0.7, -0.2, 0.03, -0.004}, origin = 2.5;
+    struct density_energy energy;
+    struct curve curve;
+    assert_ok(mf_curve_create(&curve, &mf_density_energy_polynomial));
+    memcpy(curve.parameters, c, sizeof c);
+    for (const struct field *field = curve.family->fields; field->name; field++)
+        if (strcmp(field->name, "origin") == 0)
+            memcpy((char *)curve.parameters + field->offset, &origin, sizeof origin);
+    assert_ok(mf_density_energy_init(&energy, &curve));
+    mf_curve_clear(&curve);
+    for (double density = 0; density < 8; density += 0.37) {
+        double value = 0, slope = 0;
+        for (int n = 1; n <= 4; n++) {
+            value += c[n - 1] * (pow(density - origin, n) - pow(-origin, n));
+            slope += n * c[n - 1] * pow(density - origin, n - 1);
+        }
+        assert_energy(&energy, density, value, slope, 1e-11);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_weights_have_the_integral_one_where_they_are_densities),
@@ -137,6 +160,7 @@ int main(void) {
         cmocka_unit_test(test_weights_without_range_are_refused),
         cmocka_unit_test(test_energies_go_on_as_straight_lines_beyond_a_table),
         cmocka_unit_test(test_energies_follow_the_units_of_the_file),
+        cmocka_unit_test(test_polynomials_may_have_an_origin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

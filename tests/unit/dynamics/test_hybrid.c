@@ -19,7 +19,7 @@ static void make_table(struct table *table, double a) {
 /// The time step that a fluid begins with.
 static double first_step(const struct composition *composition, const struct table *table) {
     struct hybrid hybrid;
-    assert_ok(mf_hybrid_init(&hybrid, &box, composition, table, NULL, &bins, 1, 3));
+    assert_ok(mf_hybrid_init(&hybrid, &box, composition, table, NULL, NULL, &bins, 1, 3));
     const double step = hybrid.simulation.setup.time_step;
     mf_hybrid_clear(&hybrid);
     return step;

@@ -5,6 +5,7 @@
 #include "dynamics/dpd_verlet.h"
 #include "problem/parametrisation.h"
 #include "shared/is_close.h"
+#include "shared/many_bodies.h"
 #include "shared/molecules.h"
 #include "shared/testing.h"
 
@@ -186,6 +187,48 @@ static void test_numbers_apply_changes_laws_of_bonds_and_angles(void **state) {
     mf_molecules_clear(&molecules);
 }
 
+/// Of two local densities one has numbers: r_c of its weight and c_2 of its energy.
+static void test_numbers_apply_changes_laws_of_local_densities(void **state) {
+    (void)state;
+    struct inverse_problem changed = {0};
+    struct numbers_own own = {0};
+    struct weight_parameters of_weight[] = {{0.3, 1.1, 3}, {0.3, 1.1, 3}};
+    double of_energy[2][16] = {{1, 2}, {1, 2}}, slope;
+    const struct curve weight[] = {{&mf_weight_sanyal_shell, &of_weight[0]},
+                                   {&mf_weight_sanyal_shell, &of_weight[1]}};
+    const struct curve energy[] = {{&mf_density_energy_polynomial, of_energy[0]},
+                                   {&mf_density_energy_polynomial, of_energy[1]}};
+    static struct many_body law;
+    many_bodies_add(&law, "first", 1, 1, &weight[0], &energy[0]);
+    many_bodies_add(&law, "second", 1, 1, &weight[1], &energy[1]);
+    assert_true(mf_density_energy_polynomial.size <= sizeof of_energy[0]);
+    const struct inverse_problem problem = {
+        .numbers = 2,
+        .number = {{.place = INVERSE_OF_WEIGHT,
+                    .part = 1,
+                    .offset = offsetof(struct weight_parameters, cutoff)},
+                   {.place = INVERSE_OF_DENSITY_ENERGY,
+                    .part = 1,
+                    .offset = mf_density_energy_polynomial.fields[1].offset}},
+        .weight = {2, weight},
+        .density_energy = {2, energy},
+        .scene = {.interaction = {{&mf_many_body, &law}}, .interactions = 1}};
+    assert_ok(mf_numbers_apply(&problem, (const double[]){1.7, 5}, &changed, &own));
+    const struct many_body *found =
+        mf_many_body_find(changed.scene.interaction, changed.scene.interactions);
+    assert_int_equal(found->terms, 2);
+    assert_string_equal(found->term[1].name, "second");
+    assert_identical(weight_cutoff(&found->term[0].weight), 1.1);
+    assert_identical(weight_cutoff(&found->term[1].weight), 1.7);
+    assert_close(mf_density_energy_value(&found->term[0].energy, 3, &slope), 3 + 2 * 9, 1e-12);
+    assert_close(mf_density_energy_value(&found->term[1].energy, 3, &slope), 3 + 5 * 9, 1e-12);
+    // The scene's own stay what they were.
+    assert_identical(weight_cutoff(&law.term[1].weight), 1.1);
+    assert_close(mf_density_energy_value(&law.term[1].energy, 3, &slope), 3 + 2 * 9, 1e-12);
+    mf_numbers_own_clear(&own);
+    mf_many_body_clear(&law);
+}
+
 static void test_numbers_are_variables_from_minimum_to_maximum_with_errors(void **state) {
     (void)state;
     struct mixture mixture;
@@ -274,6 +317,7 @@ int main(void) {
         cmocka_unit_test(test_numbers_apply_leaves_laws_alone_that_no_number_belongs_to),
         cmocka_unit_test(test_numbers_apply_copies_the_parameters_of_an_interaction),
         cmocka_unit_test(test_numbers_apply_changes_laws_of_bonds_and_angles),
+        cmocka_unit_test(test_numbers_apply_changes_laws_of_local_densities),
         cmocka_unit_test(test_numbers_are_variables_from_minimum_to_maximum_with_errors),
         cmocka_unit_test(test_numbers_stand_behind_the_curves_and_change_none),
         cmocka_unit_test(test_numbers_bound_is_the_end_that_a_value_has_come_to),
