@@ -108,12 +108,12 @@ INLINE void many_body_evaluate(struct pair_batch *batch, int count,
 /// What is beyond a full batch moves to its front.
 INLINE void many_body_shift(struct pair_batch *batch, const int dim) {
     batch->count -= PAIR_BATCH;
-    memcpy(batch->i, batch->i + PAIR_BATCH, PAIR_PIECE * sizeof *batch->i);
-    memcpy(batch->j, batch->j + PAIR_BATCH, PAIR_PIECE * sizeof *batch->j);
-    memcpy(batch->dx, batch->dx + PAIR_BATCH, PAIR_PIECE * sizeof *batch->dx);
-    memcpy(batch->dy, batch->dy + PAIR_BATCH, PAIR_PIECE * sizeof *batch->dy);
+    memmove(batch->i, batch->i + PAIR_BATCH, PAIR_PIECE * sizeof *batch->i);
+    memmove(batch->j, batch->j + PAIR_BATCH, PAIR_PIECE * sizeof *batch->j);
+    memmove(batch->dx, batch->dx + PAIR_BATCH, PAIR_PIECE * sizeof *batch->dx);
+    memmove(batch->dy, batch->dy + PAIR_BATCH, PAIR_PIECE * sizeof *batch->dy);
     if (dim == 3)
-        memcpy(batch->dz, batch->dz + PAIR_BATCH, PAIR_PIECE * sizeof *batch->dz);
+        memmove(batch->dz, batch->dz + PAIR_BATCH, PAIR_PIECE * sizeof *batch->dz);
 }
 
 INLINE void many_body_density_loop(const struct many_body_term *term, struct many_body_work *work,

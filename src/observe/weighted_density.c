@@ -142,9 +142,8 @@ enum status mf_weighted_density_write(const struct weighted_density *density,
         share[k] = find_bin(density, k, &error[k]);
     }
     mf_statistics_mark_unknown_errors(error, bins);
-    const struct data_column columns[] = {{"rho[1]", place, "%.6g"},
-                                          {"p[1]", share, "%.6g"},
-                                          {"error[1]", error, "%.3g"}};
+    const struct data_column columns[] = {
+        {"rho[1]", place, "%.6g"}, {"p[1]", share, "%.6g"}, {"error[1]", error, "%.3g"}};
     return mf_observable_table(results, "weighted_density.tsv", columns, 3, bins);
 }
 

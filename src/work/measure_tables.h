@@ -8,8 +8,9 @@
 bool mf_measure_tables_have_motion(const struct measure_result *result);
 bool mf_measure_tables_have_etd(const struct measure_result *result);
 
-/// Write rdf.tsv or those of pair types; structure_factor.tsv, density_profile.tsv, msd.tsv, vacf.tsv, etd.tsv,
-/// etd_error.tsv and etd_bins.tsv as far as they were measured. Fails: IO, NO_MEMORY.
+/// Write rdf.tsv or those of pair types; structure_factor.tsv, density_profile.tsv, msd.tsv,
+/// vacf.tsv, etd.tsv, etd_error.tsv and etd_bins.tsv as far as they were measured. Fails: IO,
+/// NO_MEMORY.
 enum status mf_measure_tables_write(const struct measure_result *result) MUST_USE;
 
 /// What the records of observables want to know of the system.

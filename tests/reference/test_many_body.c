@@ -76,6 +76,13 @@ static void check_kernels(struct many_bodies *many, double tolerance) {
     mf_simulation_clear(&simulation);
 }
 
+static void make(struct many_bodies *many, bool mixed, int dimensions, int beads) {
+    if (mixed)
+        many_bodies_mixture(many, dimensions, beads);
+    else
+        many_bodies_dpd(many, dimensions, beads);
+}
+
 static void test_kernels_find_what_two_loops_find(void **state) {
     (void)state;
     struct variant variants[VARIANTS_MAX];
@@ -84,7 +91,7 @@ static void test_kernels_find_what_two_loops_find(void **state) {
         for (int dimensions = 2; dimensions <= 3; dimensions++)
             for (int mixed = 0; mixed < 2; mixed++) {
                 struct many_bodies many;
-                (mixed ? many_bodies_mixture : many_bodies_dpd)(&many, dimensions, BEADS);
+                make(&many, mixed, dimensions, BEADS);
                 variants_select(&variants[v]);
                 many.fluid.setup.precision = (int)variants[v].precision;
                 check_kernels(&many, variants[v].precision == PAIR_DOUBLE ? 1e-12 : 4e-6);
@@ -139,7 +146,7 @@ static void test_forces_and_virial_are_derivatives_of_the_energy(void **state) {
     for (int dimensions = 2; dimensions <= 3; dimensions++)
         for (int mixed = 0; mixed < 2; mixed++) {
             struct many_bodies many;
-            (mixed ? many_bodies_mixture : many_bodies_dpd)(&many, dimensions, 80);
+            make(&many, mixed, dimensions, 80);
             check_differences(&many);
             many_bodies_clear(&many);
         }
@@ -209,7 +216,7 @@ static void test_same_bits_for_any_threads_and_when_restarted(void **state) {
         for (int mixed = 0; mixed < 2; mixed++) {
             struct many_bodies many;
             struct simulation alone, shared;
-            (mixed ? many_bodies_mixture : many_bodies_dpd)(&many, 3, 2000);
+            make(&many, mixed, 3, 2000);
             many.fluid.setup.precision = precision;
             many.fluid.setup.skin = 0.15;
             many.fluid.setup.temperature_limit = 100;
