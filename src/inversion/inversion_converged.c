@@ -131,6 +131,7 @@ static void record_drifts(const struct inversion *inversion, struct inversion_dr
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     struct inversion_drifts *drifts = &inversion->course.progress.drifts;
+    inversion->course.has_walked = false;
     if (!kept) // it goes back to the one before
         return false;
     const bool meets = inversion->course.progress.best.precise && meets_targets(inversion);

@@ -32,7 +32,8 @@ const struct field mf_inversion_fields[] = {
      .unit = "", .help = "most iterations"},
     {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "",
-     .help = "statistical error of g, rms over bins, needed for convergence"},
+     .help = "statistical error of g, rms over bins, needed for convergence; bins whose target is "
+             "noisier bear as much more"},
     {"damping", FIELD_NUMBER, MEMBER(damping), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "", .help = "part of each step that is taken"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,

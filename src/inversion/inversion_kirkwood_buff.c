@@ -58,7 +58,7 @@ void mf_inversion_kirkwood_buff_respond(struct inversion_state *state, double sh
 }
 
 struct inverse_doubling mf_inversion_kirkwood_buff_noise(const struct inversion_state *state) {
-    static const double noise_share = 1.0 / 3;
+    static const double noise_share = 0.5;
     const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
     const struct target *target = target_of(state);
     struct inverse_doubling noisiest = {.wanted = 1, .unit = ""};

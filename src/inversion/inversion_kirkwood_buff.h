@@ -33,6 +33,6 @@ void mf_inversion_kirkwood_buff_measure(struct inversion_state *state);
 void mf_inversion_kirkwood_buff_respond(struct inversion_state *state, double share);
 
 /// The error of an integral, and how small the samples are to make it near to the target's g: as
-/// that of its target, or a third of what it is off. Of the one that is farthest from that; 0 of 1
+/// that of its target, or half of what it is off. Of the one that is farthest from that; 0 of 1
 /// without integrals, and far from g.
 struct inverse_doubling mf_inversion_kirkwood_buff_noise(const struct inversion_state *state);
