@@ -421,6 +421,9 @@ def import_votca(settings: PathLike, folder: PathLike = "imported", *,
     FileError
         A file cannot be read, or the folder not be written.
     """
+    if isinstance(box, str) or isinstance(count, str):
+        raise InputError("import_votca: box is a number or three, count a dict: "
+                         "box=4.031, count={'CG': 2180}")
     words = ["import", "votca", _path(settings), "-o", _path(folder)]
     words += _options(
         box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),

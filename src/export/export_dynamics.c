@@ -79,8 +79,10 @@ static void print_friction(const struct export_job *job, const char *prefix, FIL
                 mf_export_dynamics_friction(job), job->worst_misfit);
     else
         fprintf(stream, "%s: a Langevin bath of each bead, %s, m/gamma = %.4g %s%s\n",
-                lost ? "NOT that of the result" : "the result has none", job->engine->bath,
-                mf_export_slowing(job) * job->units.time, job->units.time_name,
+                !lost              ? "the result has none"
+                : can_express(job) ? "by default NOT that of the result (see \"package\")"
+                                   : "NOT that of the result",
+                job->engine->bath, mf_export_slowing(job) * job->units.time, job->units.time_name,
                 lost ? "; lost are omega(r), conserved momentum and flow" : "");
 }
 
@@ -114,7 +116,8 @@ static void print_measured(const struct export_job *job, const char *prefix, FIL
         print_number(stream, own, diffusion);
     fprintf(stream, both ? " %s^2/%s of the result, " : "", units->length_name, units->time_name);
     print_number(stream, there, diffusion);
-    fprintf(stream, " %s^2/%s there", units->length_name, units->time_name);
+    fprintf(stream, " %s^2/%s %s", units->length_name, units->time_name,
+            job->runs == EXPORT_BATH ? "in that bath" : "by that friction");
     if (both)
         print_change(stream, own, there);
     const double window = units->time * p->interval * (EXPORT_TIMES - 1);

@@ -319,8 +319,11 @@ static void advise(const struct export_job *job, const char *prefix, FILE *strea
         [EXPORT_NOT_HERE] = "the lmp of this machine lacks it, as Debian's does",
         [EXPORT_NO_PROGRAM] = "no lmp was found here; Debian's lacks it"};
     if (mf_export_is_power(job))
-        fprintf(stream, "%spackage    -var friction dpd is %s, of LAMMPS's package DPD-BASIC: %s\n",
-                prefix, mf_export_dynamics_friction(job), here[job->here]);
+        fprintf(stream,
+                "%spackage    -var friction dpd runs that of the result, misfit %.2g: %s of "
+                "LAMMPS's package "
+                "DPD-BASIC; %s\n",
+                prefix, job->worst_misfit, mf_export_dynamics_friction(job), here[job->here]);
     if (job->runs != EXPORT_OWN_FRICTION)
         fprintf(stream,
                 "%sexact      -var friction exact runs omega as it is, by mesofit's share/lammps\n",

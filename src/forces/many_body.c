@@ -259,7 +259,7 @@ bool mf_many_body_remark(const struct many_body *many_body, const void *own, int
 }
 
 const struct interaction mf_many_body = {
-    .name = "local-density",
+    .name = "many_body",
     .summary = "energies of local densities",
     .parameters_size = sizeof(struct many_body),
     .state_size = sizeof(struct state),

@@ -93,7 +93,7 @@ static void test_friction_that_an_engine_has_goes_along(void **state) {
     simulate(*state, soft_fluid, "1");
     const char *said = export_to("espresso", NULL);
     assert_contains(said, "friction   that of the result: dpd with weight_function 1");
-    assert_true(strstr(said, " there") == NULL && strstr(said, "NOT") == NULL);
+    assert_true(strstr(said, " in that bath") == NULL && strstr(said, "NOT") == NULL);
 }
 
 /// D of the block is the slope of Ornstein's MSD, 2 (T/(m g²)) (g t − 1 + exp(−g t)) along an axis,
@@ -136,18 +136,18 @@ static void test_what_the_lammps_here_lacks_is_told(void **state) {
     snprintf(path, sizeof path, "%s", getenv("PATH"));
     simulate(*state, soft_fluid, "0.5");
     const char *said = export_to("lammps", NULL);
-    assert_contains(said, "DPD-BASIC: no lmp was found here");
+    assert_contains(said, "DPD-BASIC; no lmp was found here");
     write_lammps(*state, "buck dpd/ext/tstat/gpu dpd/tstat soft");
     said = export_to("lammps", NULL);
     assert_contains(said,
-                    "dpd/ext/tstat, of LAMMPS's package DPD-BASIC: the lmp of this machine lacks");
+                    "dpd/ext/tstat of LAMMPS's package DPD-BASIC; the lmp of this machine lacks");
     assert_contains(said, "NOT that of the result");
     char *text = temporary_folder_read("lammps/in.mesofit");
     assert_contains(text, "variable friction index langevin ");
     free(text);
     write_lammps(*state, "buck dpd/ext/tstat soft");
     said = export_to("lammps", NULL);
-    assert_contains(said, "DPD-BASIC: the lmp of this machine has it");
+    assert_contains(said, "DPD-BASIC; the lmp of this machine has it");
     assert_contains(said, "friction   that of the result: dpd/ext/tstat");
     text = temporary_folder_read("lammps/in.mesofit");
     assert_contains(text, "variable friction index dpd ");

@@ -177,7 +177,7 @@ static void test_other_engines_refuse_it(void **state) {
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs", "-o", "refused");
     run_program_assert_refused(&result, "refused", "gromacs", 1,
-                               (const char *const[]){"local-density", NULL});
+                               (const char *const[]){"\"many_body\"", NULL});
 }
 
 #define CASE(test) cmocka_unit_test_setup_teardown(test, small_inputs_enter, small_inputs_leave)
