@@ -138,22 +138,32 @@ static void join_single(struct structure *structure) {
         join_neighbour(&atom[k - 1], &atom[k]);
 }
 
-/// Bonds make molecules, which tell residues apart that are numbered and called the same.
-static enum status read_bonds(const struct trajectory_frame *frame, const char *from,
-                              struct structure *structure) {
-    OWNED uint32_t(*bond)[2] = NULL;
+static enum status read_section(const struct trajectory_frame *frame, const char *from, int kind,
+                                struct structure *structure) {
+    static const char *const keys[STRUCTURE_TERM_KINDS] = {"!NBOND", "!NTHETA", "!NPHI"};
+    struct structure_terms *const terms = &structure->terms[kind];
+    const size_t atoms = 2 + (size_t)kind;
     struct word word;
     int64_t count;
-    const char *const line = find_section(frame, from, "!NBOND", &word);
+    const char *const line = find_section(frame, from, keys[kind], &word);
     if (line == NULL)
         return STATUS_OK;
     if (!mf_words_integer(&word, &count) || count < 0 || (size_t)count > frame->raw.size)
-        return mf_frame_fail_line(frame, line, "expected the number of bonds");
-    if (count == 0)
+        return mf_frame_fail_line(frame, line, "expected the number of terms");
+    TRY_ARRAY(terms->atom, atoms * (size_t)count);
+    terms->count = (size_t)count;
+    return read_terms(frame, line, structure->atoms, terms->atom, atoms * terms->count);
+}
+
+/// Bonds make molecules, which tell residues apart that are numbered and called the same.
+static enum status read_bonds(const struct trajectory_frame *frame, const char *from,
+                              struct structure *structure) {
+    const struct structure_terms *const bonds = &structure->terms[0];
+    for (int kind = 0; from && kind < STRUCTURE_TERM_KINDS; kind++)
+        TRY(read_section(frame, from, kind, structure));
+    if (bonds->count == 0)
         return STATUS_OK;
-    TRY_ARRAY(bond, (size_t)count);
-    TRY(read_terms(frame, line, structure->atoms, bond[0], 2 * (size_t)count));
-    TRY(mf_structure_join(structure, (const uint32_t(*)[2])bond, (size_t)count));
+    TRY(mf_structure_join(structure, (const uint32_t(*)[2])bonds->atom, bonds->count));
     join_single(structure);
     return STATUS_OK;
 }

@@ -150,6 +150,10 @@ static void test_psf_has_molecules_by_bonds(void **state) {
     assert_true(molecule(2) != molecule(3));
     assert_true(molecule(6) == molecule(7) && molecule(8) == 0);
     assert_atom(1, "O", "WAT", 16, 0);
+    assert_int_equal(trajectory.structure.terms[0].count, 3);
+    assert_int_equal(trajectory.structure.terms[0].atom[5], 7);
+    assert_int_equal(trajectory.structure.terms[1].count, 1);
+    assert_int_equal(trajectory.structure.terms[1].atom[2], 2);
     mf_trajectory_close(&trajectory);
     snprintf(text, sizeof text, "%s%s", atoms, " 2 !NBOND: bonds\n 2 3 4 11\n");
     assert_fails(try(state, "a.psf", text), STATUS_BAD_INPUT,
@@ -157,7 +161,7 @@ static void test_psf_has_molecules_by_bonds(void **state) {
     snprintf(text, sizeof text, "%s%s", atoms, " 2 !NBOND: bonds\n 2 3 4\n");
     assert_fails(try(state, "a.psf", text), STATUS_BAD_INPUT, "the file ends with 3 of 4 numbers");
     snprintf(text, sizeof text, "%s%s", atoms, " x !NBOND: bonds\n 2 3 4\n");
-    assert_fails(try(state, "a.psf", text), STATUS_BAD_INPUT, "expected the number of bonds");
+    assert_fails(try(state, "a.psf", text), STATUS_BAD_INPUT, "expected the number of terms");
 }
 
 #define TEST(name)                                                                                 \
