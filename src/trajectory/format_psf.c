@@ -122,20 +122,27 @@ static enum status read_terms(const struct trajectory_frame *frame, const char *
     return STATUS_OK;
 }
 
-/// An atom without bonds is of the molecule of its neighbour, if that is of the same residue.
-static void join_neighbour(struct structure_atom *atom, const struct structure_atom *neighbour) {
-    if (atom->molecule == 0 && atom->residue_number == neighbour->residue_number &&
-        atom->chain == neighbour->chain && strcmp(atom->residue_name, neighbour->residue_name) == 0)
-        atom->molecule = neighbour->molecule;
+static bool are_of_one_residue(const struct structure_atom *a, const struct structure_atom *b) {
+    return a->residue_number == b->residue_number && a->chain == b->chain &&
+           strcmp(a->residue_name, b->residue_name) == 0;
 }
 
-/// Sites that no bond joins, as those without mass, stay in their residues.
+/// Atoms that no bond joins: a site without mass is of the molecule of its residue; but of a
+/// residue that is several molecules, whose number says nothing, each is on its own.
 static void join_single(struct structure *structure) {
     struct structure_atom *const atom = structure->atom;
-    for (size_t k = 1; k < structure->atoms; k++)
-        join_neighbour(&atom[k], &atom[k - 1]);
-    for (size_t k = structure->atoms - 1; k > 0; k--)
-        join_neighbour(&atom[k - 1], &atom[k]);
+    for (size_t first = 0, end; first < structure->atoms; first = end) {
+        int64_t molecule = 0;
+        bool several = false;
+        for (end = first; end < structure->atoms && are_of_one_residue(&atom[first], &atom[end]);
+             end++) {
+            several = several || (molecule && atom[end].molecule && atom[end].molecule != molecule);
+            molecule = atom[end].molecule ? atom[end].molecule : molecule;
+        }
+        for (size_t k = first; k < end; k++)
+            if (atom[k].molecule == 0)
+                atom[k].molecule = several ? (int64_t)k + 1 : molecule;
+    }
 }
 
 static enum status read_section(const struct trajectory_frame *frame, const char *from, int kind,

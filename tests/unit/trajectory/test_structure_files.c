@@ -124,8 +124,8 @@ static size_t molecule(size_t k) {
 }
 
 /// Waters that are all called and numbered the same, as VMD writes them, are told apart by bonds,
-/// which go on over lines; a site without bonds is of the water that it stands in, whether it comes
-/// first or last, and a chain's residues are one molecule. No segment has a name.
+/// which go on over lines, and what has none is on its own; but a site without bonds is of its
+/// residue, if that is one molecule. A chain's residues are one molecule. No segment has a name.
 static void test_psf_has_molecules_by_bonds(void **state) {
     static const char atoms[] = "PSF\n\n 10 !NATOM\n"
                                 " 1      0    WAT  M    4      0.0   0.0     0\n"
@@ -134,24 +134,24 @@ static void test_psf_has_molecules_by_bonds(void **state) {
                                 " 4      0    WAT  O    1      0.0  16.0     0\n"
                                 " 5      0    WAT  H    2      0.0   1.0     0\n"
                                 " 6      0    WAT  M    4      0.0   0.0     0\n"
-                                " 7      1    UNK  C    3      0.0  12.0     0\n"
+                                " 7      2    UNK  M    3      0.0  12.0     0\n"
                                 " 8      2    UNK  C    3      0.0  12.0     0\n"
-                                " 9      2    ION  X    5      0.0  12.0     0\n"
+                                " 9      3    UNK  C    3      0.0  12.0     0\n"
                                 "10      2    ION  X    5      0.0  12.0     0\n\n";
     char text[2048];
     snprintf(text, sizeof text, "%s%s", atoms,
-             " 3 !NBOND: bonds\n 2 3 4 5\n 7\n8\n\n 1 !NTHETA: angles\n 1 2 3\n");
+             " 3 !NBOND: bonds\n 2 3 4 5\n 8\n9\n\n 1 !NTHETA: angles\n 1 2 3\n");
     assert_ok(try(state, "a.psf", text));
-    static const size_t residue[] = {0, 0, 0, 1, 1, 1, 2, 3, 4, 4};
+    static const size_t residue[] = {0, 1, 1, 2, 2, 3, 4, 4, 5, 6};
     for (size_t k = 0; k < 10; k++)
         assert_int_equal(trajectory.structure.atom[k].residue, residue[k]);
     assert_true(trajectory.structure.has_molecules);
-    assert_true(molecule(0) == molecule(2) && molecule(3) == molecule(5));
+    assert_true(molecule(1) == molecule(2) && molecule(3) == molecule(4));
     assert_true(molecule(2) != molecule(3));
-    assert_true(molecule(6) == molecule(7) && molecule(8) == 0);
-    assert_atom(1, "O", "WAT", 16, 0);
+    assert_true(molecule(6) == molecule(7) && molecule(7) == molecule(8) && molecule(9) == 0);
+    assert_atom(1, "O", "WAT", 16, 1);
     assert_int_equal(trajectory.structure.terms[0].count, 3);
-    assert_int_equal(trajectory.structure.terms[0].atom[5], 7);
+    assert_int_equal(trajectory.structure.terms[0].atom[5], 8);
     assert_int_equal(trajectory.structure.terms[1].count, 1);
     assert_int_equal(trajectory.structure.terms[1].atom[2], 2);
     mf_trajectory_close(&trajectory);
