@@ -248,15 +248,6 @@ static enum status read_terms(struct reading *reading, int order) {
 
 // Kinds -------------------------------------------------------------------------------------------
 
-/// How far the terms that there are reach: what "exclude" is without a number.
-static int reach_of(const struct topology_kind *kind) {
-    int reach = 0;
-    for (int order = 0; order < BONDED_KINDS; order++)
-        if (kind->terms[order] > 0 && mf_bonded_kinds[order]->reach > reach)
-            reach = mf_bonded_kinds[order]->reach;
-    return reach;
-}
-
 /// Check a kind and hand it over to the topology, or clear it if there was a fault.
 static enum status enter_kind(struct reading *reading, size_t faults) {
     struct topology *topology = &reading->molecules->molecules.topology;
@@ -303,7 +294,7 @@ static enum status read_kind(struct reading *reading, struct json_object *molecu
             status = read_terms(reading, order);
     }
     reading->kind.exclude =
-        given.exclude == AS_FAR_AS_TERMS ? reach_of(&reading->kind) : (int)given.exclude;
+        given.exclude == AS_FAR_AS_TERMS ? mf_topology_reach(&reading->kind) : (int)given.exclude;
     mf_json_finish(object);
     const enum status entered = enter_kind(reading, faults);
     return status == STATUS_OK ? entered : status;

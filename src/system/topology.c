@@ -368,3 +368,11 @@ bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t 
             return true;
     return false;
 }
+
+int mf_topology_reach(const struct topology_kind *kind) {
+    int reach = 0;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        if (kind->terms[order] > 0 && mf_bonded_kinds[order]->reach > reach)
+            reach = mf_bonded_kinds[order]->reach;
+    return reach;
+}

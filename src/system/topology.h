@@ -71,6 +71,9 @@ enum status mf_topology_check(const struct topology_kind *kind) MUST_USE;
 /// The same of one term, and those of its order before it.
 enum status mf_topology_check_term(const struct topology_kind *kind, int order, int n) MUST_USE;
 
+/// How far the terms that there are reach: "exclude" where nobody gives a number.
+int mf_topology_reach(const struct topology_kind *kind);
+
 /// The first term two beads of which follow each other in a chain and no bond joins, or NULL.
 /// @param[out] order  of the term
 /// @param[out] pair   the two beads, from 0

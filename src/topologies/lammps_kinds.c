@@ -110,7 +110,11 @@ static enum status find_type(struct finding *finding, size_t atom) {
     struct composition *composition = finding->composition;
     char name[32];
     int type = 0;
-    snprintf(name, sizeof name, "%lld", (long long)finding->source->structure->atom[atom].type);
+    const struct structure_atom *const is = &finding->source->structure->atom[atom];
+    if (finding->source->named)
+        snprintf(name, sizeof name, "%s", is->name);
+    else
+        snprintf(name, sizeof name, "%lld", (long long)is->type);
     while (type < composition->types && strcmp(composition->name[type], name) != 0)
         type++;
     if (type == COMPOSITION_MAX_TYPES)
@@ -156,7 +160,9 @@ static bool is_of(const struct finding *finding, size_t molecule,
 static enum status add_kind(struct finding *finding, size_t molecule) {
     struct topology *topology = finding->topology;
     const size_t beads = beads_of(finding, molecule);
-    const long long id = (long long)finding->source->structure->atom[molecule].id;
+    const struct structure *const structure = finding->source->structure;
+    const long long id =
+        structure->has_ids ? (long long)structure->atom[molecule].id : (long long)molecule + 1;
     if (topology->kinds == TOPOLOGY_MAX_KINDS)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the molecule of atom %lld: more than %d kinds",
                               finding->source->file, id, TOPOLOGY_MAX_KINDS);

@@ -10,6 +10,7 @@ struct lammps_kinds_source {
     const struct lammps_terms *terms;
     int *const *group; ///< shape [BONDED_KINDS][types]: of each type of terms
     int exclude;
+    bool named; ///< types are called as the atoms, and not by their numbers
 };
 
 /// Add kinds to a topology, and types and counts of all atoms to a composition, as

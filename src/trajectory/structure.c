@@ -19,6 +19,11 @@ enum status mf_structure_init(struct structure *structure, size_t atoms) {
 
 void mf_structure_clear(struct structure *structure) {
     mf_memory_free(structure->atom);
+    for (int kind = 0; kind < STRUCTURE_TERM_KINDS; kind++) {
+        mf_memory_free(structure->terms[kind].atom);
+        mf_memory_free(structure->terms[kind].type);
+        mf_memory_free(structure->terms[kind].name);
+    }
     *structure = (struct structure){0};
 }
 

@@ -26,13 +26,26 @@ struct structure_atom {
 /// What stands in the place of names: a file of LAMMPS has elements or types for them.
 enum structure_names { STRUCTURE_NAMES, STRUCTURE_ELEMENTS, STRUCTURE_TYPES };
 
+/// Bonds, angles and dihedrals, of 2, 3 and 4 atoms.
+enum { STRUCTURE_TERM_KINDS = 3 };
+
+/// All terms of a kind, by the places of their atoms.
+struct structure_terms {
+    size_t count;
+    uint32_t *atom; ///< shape [count, 2 + kind]
+    uint32_t *type; ///< shape [count]; NULL: the file has no types of terms
+    size_t types;
+    char (*name)[STRUCTURE_NAME]; ///< shape [types]
+};
+
 /// What its format, or the file, knows of atoms.
 struct structure {
     size_t atoms;
     struct structure_atom *atom; ///< shape [atoms], in the order of every frame's positions
     bool has_names, has_residues, has_elements, has_molecules, has_types, has_ids, has_masses;
-    enum structure_names names; ///< what they are, if it has them
-    size_t residues;            ///< 0 if neither residues nor molecules are known
+    enum structure_names names;                         ///< what they are, if it has them
+    struct structure_terms terms[STRUCTURE_TERM_KINDS]; ///< as far as a format reads them
+    size_t residues; ///< 0 if neither residues nor molecules are known
 };
 
 /// `atoms` atoms of which nothing is known. Fails: NO_MEMORY.

@@ -77,6 +77,11 @@ static void find_hint(const char *file, const unsigned char *begin, size_t size,
                  name);
     else if (ends_with(file, ".trz"))
         snprintf(hint, HINT, "TRZ is not read: MDAnalysis makes .xtc or .dcd of it");
+    else if (ends_with(file, ".mdcrd") || ends_with(file, ".crd"))
+        snprintf(hint, HINT,
+                 "Amber's text does not say how many atoms it has: \"cpptraj -p PRMTOP -y %s -x "
+                 "traj.nc\" makes what is read",
+                 name);
     else
         list_formats(hint);
 }

@@ -119,6 +119,51 @@ static void test_psf_has_names_residues_and_masses(void **state) {
     assert_fails(try(state, "a.psf", "PSF\n\n"), STATUS_BAD_INPUT, "there is no section !NATOM");
 }
 
+static size_t molecule(size_t k) {
+    return (size_t)trajectory.structure.atom[k].molecule;
+}
+
+/// Waters that are all called and numbered the same, as VMD writes them, are told apart by bonds,
+/// which go on over lines, and what has none is on its own; but a site without bonds is of its
+/// residue, if that is one molecule. A chain's residues are one molecule. No segment has a name.
+static void test_psf_has_molecules_by_bonds(void **state) {
+    static const char atoms[] = "PSF\n\n 10 !NATOM\n"
+                                " 1      0    WAT  M    4      0.0   0.0     0\n"
+                                " 2      0    WAT  O    1      0.0  16.0     0\n"
+                                " 3      0    WAT  H    2      0.0   1.0     0\n"
+                                " 4      0    WAT  O    1      0.0  16.0     0\n"
+                                " 5      0    WAT  H    2      0.0   1.0     0\n"
+                                " 6      0    WAT  M    4      0.0   0.0     0\n"
+                                " 7      2    UNK  M    3      0.0  12.0     0\n"
+                                " 8      2    UNK  C    3      0.0  12.0     0\n"
+                                " 9      3    UNK  C    3      0.0  12.0     0\n"
+                                "10      2    ION  X    5      0.0  12.0     0\n\n";
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", atoms,
+             " 3 !NBOND: bonds\n 2 3 4 5\n 8\n9\n\n 1 !NTHETA: angles\n 1 2 3\n");
+    assert_ok(try(state, "a.psf", text));
+    static const size_t residue[] = {0, 1, 1, 2, 2, 3, 4, 4, 5, 6};
+    for (size_t k = 0; k < 10; k++)
+        assert_int_equal(trajectory.structure.atom[k].residue, residue[k]);
+    assert_true(trajectory.structure.has_molecules);
+    assert_true(molecule(1) == molecule(2) && molecule(3) == molecule(4));
+    assert_true(molecule(2) != molecule(3));
+    assert_true(molecule(6) == molecule(7) && molecule(7) == molecule(8) && molecule(9) == 0);
+    assert_atom(1, "O", "WAT", 16, 1);
+    assert_int_equal(trajectory.structure.terms[0].count, 3);
+    assert_int_equal(trajectory.structure.terms[0].atom[5], 8);
+    assert_int_equal(trajectory.structure.terms[1].count, 1);
+    assert_int_equal(trajectory.structure.terms[1].atom[2], 2);
+    mf_trajectory_close(&trajectory);
+    snprintf(text, sizeof text, "%s%s", atoms, " 2 !NBOND: bonds\n 2 3 4 11\n");
+    assert_fails(try(state, "a.psf", text), STATUS_BAD_INPUT,
+                 "a.psf:16: frame 0: expected an atom from 1 to 10, not 11");
+    snprintf(text, sizeof text, "%s%s", atoms, " 2 !NBOND: bonds\n 2 3 4\n");
+    assert_fails(try(state, "a.psf", text), STATUS_BAD_INPUT, "the file ends with 3 of 4 numbers");
+    snprintf(text, sizeof text, "%s%s", atoms, " x !NBOND: bonds\n 2 3 4\n");
+    assert_fails(try(state, "a.psf", text), STATUS_BAD_INPUT, "expected the number of terms");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, temporary_folder_create, temporary_folder_remove)
 
@@ -128,6 +173,7 @@ int main(void) {
         TEST(test_topology_has_sections_of_any_case),
         TEST(test_topology_is_refused_with_its_line),
         TEST(test_psf_has_names_residues_and_masses),
+        TEST(test_psf_has_molecules_by_bonds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -119,6 +119,8 @@ static void add_frames(bool moves) {
     add_chunk(0, "particles/image", INT32, ATOMS, 3, image, sizeof image);
     add_chunk(0, "bonds/N", UINT32, 1, 1, &(uint32_t){1}, 4);
     add_chunk(0, "bonds/group", version == 2 ? UINT32 : INT32, 1, 2, (uint32_t[]){2, 1}, 8);
+    add_chunk(0, "bonds/types", INT8, 2, 3, "no\0yes", 6);
+    add_chunk(0, "bonds/typeid", UINT32, 1, 1, &(uint32_t){1}, 4);
     add_chunk(1, "configuration/step", UINT64, 1, 1, &(uint64_t){500}, 8);
     add_vectors(1, "particles/position", 1);
     if (moves)
@@ -178,6 +180,11 @@ static void test_gsd_is_read_where_frames_lean_on_the_first(void **state) {
         assert_ok(try(state, "real"));
         assert_string_equal(trajectory.format->name, "gsd");
         assert_int_equal(trajectory.frames, 3);
+        const struct structure_terms *const bonds = &trajectory.structure.terms[0];
+        assert_int_equal(bonds->count, 1);
+        assert_int_equal(bonds->atom[0], 2);
+        assert_int_equal(bonds->atom[1], 1);
+        assert_string_equal(bonds->name[bonds->type[0]], "yes");
         for (int number = 0; number < 3; number++) {
             next(true);
             assert_frame(number, number < 2 ? sheared : cube);

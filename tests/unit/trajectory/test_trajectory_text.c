@@ -274,6 +274,7 @@ static void test_text_is_refused_with_its_line(void **state) {
                    "a.odd: not a trajectory: read are xtc, trr, dcd");
     assert_refused(state, "a.odd", "who knows\n", "MDAnalysis convert others");
     assert_refused(state, "a.tng", "any bytes", "-o traj.xtc\" makes what is");
+    assert_refused(state, "a.mdcrd", "any bytes", "-x traj.nc\" makes what is read");
     assert_refused(state, "a.trz", "any bytes", "MDAnalysis makes .xtc or .dcd of it");
     assert_refused(state, "a.tpr", "any bytes", "a.tpr: not a trajectory: GROMACS's .tpr is not");
     assert_refused(state, "a.xtc", "", "a.xtc: the file is empty");

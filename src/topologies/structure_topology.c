@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "topologies/structure_topology.h"
+
+#include "base/memory.h"
+#include "topologies/lammps_kinds.h"
+#include "trajectory/trajectory.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+
+bool mf_structure_topology_is(const char *file) {
+    const char *const end = strrchr(file, '.');
+    return end && (strcasecmp(end, ".psf") == 0 || strcasecmp(end, ".gsd") == 0);
+}
+
+struct reading {
+    struct molecules *molecules;
+    const char *file;
+    const struct structure *structure;
+    struct lammps_terms terms; ///< their types are groups
+};
+
+// Groups ------------------------------------------------------------------------------------------
+
+/// "A-B-C", from the end whose names come first.
+static void name_by_atoms(const struct structure *structure, int order, const uint32_t *atom,
+                          char *name, size_t size) {
+    const int last = order + 1;
+    int turned = 0;
+    size_t length = 0;
+    for (int k = 0; k <= last / 2 && turned == 0; k++)
+        turned = strcmp(structure->atom[atom[k]].name, structure->atom[atom[last - k]].name);
+    for (int k = 0; k <= last && length < size; k++)
+        length += (size_t)snprintf(name + length, size - length, "%s%s", k > 0 ? "-" : "",
+                                   structure->atom[atom[turned > 0 ? last - k : k]].name);
+}
+
+static enum status find_group(struct reading *reading, int order, size_t n, int *group) {
+    struct molecules *const molecules = reading->molecules;
+    const struct structure_terms *const terms = &reading->structure->terms[order];
+    const struct bonded_kind *const kind = mf_bonded_kinds[order];
+    char name[BONDED_MAX_TERM_BEADS * STRUCTURE_NAME + 1];
+    if (terms->type)
+        snprintf(name, sizeof name, "%s", terms->name[terms->type[n]]);
+    else
+        name_by_atoms(reading->structure, order, terms->atom + n * (size_t)kind->beads, name,
+                      sizeof name);
+    for (*group = 0; *group < molecules->groups[order]; ++*group)
+        if (strcmp(molecules->group[order][*group].name, name) == 0)
+            return STATUS_OK;
+    if (!mf_topology_is_name(name))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: %s %zu: \"%s\" is no name of a group, which has up to %d "
+                              "letters, digits, _ and -: give the molecules by a JSON file",
+                              reading->file, kind->name, n + 1, name, TOPOLOGY_NAME_SIZE - 1);
+    if (*group == MOLECULES_MAX_GROUPS)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: more than %d types of %s: give the molecules by a JSON file",
+                              reading->file, MOLECULES_MAX_GROUPS, kind->plural);
+    return mf_molecules_add_group(molecules, order, name, kind->laws[0]);
+}
+
+static enum status list_terms(struct reading *reading, int order) {
+    const struct structure_terms *const from = &reading->structure->terms[order];
+    const int beads = mf_bonded_kinds[order]->beads;
+    TRY_ARRAY(reading->terms.term[order], from->count);
+    reading->terms.terms[order] = from->count;
+    for (size_t n = 0; n < from->count; n++) {
+        struct lammps_term *const term = &reading->terms.term[order][n];
+        TRY(find_group(reading, order, n, &term->type));
+        for (int k = 0; k < beads; k++)
+            term->atom[k] = (int)from->atom[n * (size_t)beads + (size_t)k];
+    }
+    return STATUS_OK;
+}
+
+// Kinds -------------------------------------------------------------------------------------------
+
+static enum status find_kinds(struct reading *reading, struct composition *types) {
+    int own[MOLECULES_MAX_GROUPS];
+    int *group[BONDED_KINDS];
+    OWNED size_t *order = NULL;
+    for (int g = 0; g < MOLECULES_MAX_GROUPS; g++)
+        own[g] = g;
+    for (int kind = 0; kind < BONDED_KINDS; kind++)
+        group[kind] = own;
+    return mf_lammps_kinds_find(&(struct lammps_kinds_source){.file = reading->file,
+                                                              .structure = reading->structure,
+                                                              .terms = &reading->terms,
+                                                              .group = group,
+                                                              .exclude = 0,
+                                                              .named = true},
+                                &reading->molecules->topology, types, &order);
+}
+
+/// Whether two kinds have as many beads of each type.
+static bool have_same_beads(const struct topology_kind *a, const struct topology_kind *b) {
+    int more[COMPOSITION_MAX_TYPES] = {0};
+    if (a->beads != b->beads)
+        return false;
+    for (int bead = 0; bead < a->beads; bead++) {
+        more[a->type[bead]]++;
+        more[b->type[bead]]--;
+    }
+    for (int type = 0; type < COMPOSITION_MAX_TYPES; type++)
+        if (more[type] != 0)
+            return false;
+    return true;
+}
+
+/// Molecules of a trajectory are known by their beads.
+static enum status check_kinds(struct reading *reading, const struct composition *types) {
+    struct topology *const topology = &reading->molecules->topology;
+    for (int type = 0; type < types->types; type++)
+        if (!mf_composition_is_name(types->name[type]))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: \"%s\" is no name of a type, which has up to %d letters, "
+                                  "digits and _: give the molecules by a JSON file",
+                                  reading->file, types->name[type], COMPOSITION_NAME_SIZE - 1);
+    for (int k = 0; k < topology->kinds; k++) {
+        topology->kind[k].exclude = mf_topology_reach(&topology->kind[k]);
+        const enum status status = mf_topology_check(&topology->kind[k]);
+        if (status != STATUS_OK)
+            return mf_status_prefix(status, "%s: %s", reading->file, topology->kind[k].name);
+        for (int other = 0; other < k; other++)
+            if (have_same_beads(&topology->kind[k], &topology->kind[other]))
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: molecules of the same beads differ in the order of "
+                                      "these or in what joins them: give them by a JSON file",
+                                      reading->file);
+    }
+    return STATUS_OK;
+}
+
+enum status mf_structure_topology_read(struct molecules *molecules, struct composition *types,
+                                       const char *file) {
+    enum status status = STATUS_OK;
+    const struct trajectory_options options = {.units = "nm-ps"}; // of what is not used
+    struct trajectory trajectory;
+    struct reading reading = {.molecules = molecules, .file = file};
+    TRY(mf_trajectory_open(&trajectory, file, &options));
+    reading.structure = &trajectory.structure;
+    for (int order = 0; order < STRUCTURE_TERM_KINDS; order++)
+        CHECK(list_terms(&reading, order));
+    CHECK(find_kinds(&reading, types));
+    CHECK(check_kinds(&reading, types));
+done:
+    mf_lammps_terms_clear(&reading.terms);
+    mf_trajectory_close(&trajectory);
+    return status;
+}
