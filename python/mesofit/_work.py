@@ -286,7 +286,8 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
             begin: float | None = None, end: float | None = None, every: float | None = None,
             range: float | None = None, bins: int | None = None, q_range: float | None = None,
             waves: int | None = None, density_profile: str | None = None,
-            profile_bins: int | None = None, window: float | None = None,
+            profile_bins: int | None = None,
+            weighted_density: tuple[float, float] | None = None, window: float | None = None,
             escape: float | None = None, velocities: str | None = None, static: bool = False,
             temperature: float | None = None, units: str | None = None,
             allow_truncated: bool = False, file_units: str | None = None,
@@ -321,6 +322,8 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         Axis of the box along which the density of each type is measured.
     profile_bins : int, optional
         Of it; else 100.
+    weighted_density : two floats, optional [nm]
+        r_0 and r_c of the distribution of densities around each bead, by a weight from 1 to 0.
     window : float, optional [ps]
         Of MSD, VACF and escape times; else a tenth of the time, 100 frames at most.
     escape : float, optional [nm]
@@ -364,7 +367,9 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         map=None if map is None else Path(_maps(map, memory)),
         molecules=None if molecules is None else Path(_lend(molecules, {}, "molecules", memory)),
         begin=begin, end=end, every=every, range=range, bins=bins, q_range=q_range, waves=waves,
-        density_profile=density_profile, profile_bins=profile_bins, window=window,
+        density_profile=density_profile, profile_bins=profile_bins,
+        weighted_density=None if weighted_density is None
+        else ",".join(repr(float(x)) for x in weighted_density), window=window,
         escape=escape, velocities=velocities, static=static, temperature=temperature,
         units=units, allow_truncated=allow_truncated, file_units=file_units,
         file_time_step=file_time_step, file_group=file_group,

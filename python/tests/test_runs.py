@@ -63,7 +63,8 @@ def test_target_is_fitted_with_keys_of_the_callers(tmp_path):
     with pytest.raises(mesofit.InputError) as fault:
         mesofit.fit(target, folder=tmp_path / "out")
     line, code = run_program("fit", "--target", target.folder, "-o", tmp_path / "out")
-    assert str(fault.value) == line and code == 2
+    # Keywords have no dashes.
+    assert str(fault.value) == line.replace("--", "") and code == 2
     keys = dict(method="ibi", unknowns={"potential": {"cuttof": 0.9}})
     with pytest.raises(mesofit.InputError, match="cuttof: unknown key"):
         mesofit.fit(target, temperature=298, folder=tmp_path / "out", **keys)
