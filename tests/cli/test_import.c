@@ -187,6 +187,14 @@ static void test_settings_become_a_run_file(void **state) {
     assert_contains(result.err, "votca: the folder holds files that are not of an import");
 }
 
+static void test_a_pressure_of_all_is_no_target(void **state) {
+    write_settings(state, "<own>3</own>", "<p_target>1</p_target>");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "left out: inverse.p_target: it is a target only inside "
+                                "<non-bonded><inverse>, with <post_update>pressure\n");
+}
+
 /// A table of the topology that no <bonded> has is a known potential.
 static void test_a_table_without_a_target_is_known(void **state) {
     write_settings(state, "<target>stick.dist.tgt</target>", "");
@@ -263,11 +271,9 @@ static void test_faults_are_named_with_their_lines(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_a_map_in_xml_measures_what_ours_does),
-        TEST(test_bonds_of_a_map_are_measured),
-        TEST(test_settings_become_a_run_file),
-        TEST(test_a_table_without_a_target_is_known),
-        TEST(test_box_and_counts_can_be_told),
+        TEST(test_a_map_in_xml_measures_what_ours_does), TEST(test_bonds_of_a_map_are_measured),
+        TEST(test_settings_become_a_run_file),           TEST(test_a_pressure_of_all_is_no_target),
+        TEST(test_a_table_without_a_target_is_known),    TEST(test_box_and_counts_can_be_told),
         TEST(test_faults_are_named_with_their_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
