@@ -233,6 +233,14 @@ static void test_box_and_counts_can_be_told(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+/// One line each.
+#define BONDED(name, table)                                                                        \
+    "<bonded><name>" name "</name><inverse><target>stick.dist.tgt</target><gromacs><table>"        \
+    "table_b" table ".xvg</table></gromacs></inverse></bonded>\n"
+#define NON_BONDED(first, second)                                                                  \
+    "<non-bonded><name>other</name><type1>" first "</type1><type2>" second "</type2>"              \
+    "<max>0.8</max><inverse><target>A-A.dist.tgt</target></inverse></non-bonded>\n"
+
 static void test_faults_are_named_with_their_lines(void **state) {
     static const struct {
         const char *from, *to, *part;
@@ -249,6 +257,17 @@ static void test_faults_are_named_with_their_lines(void **state) {
         {"<target>A-A.dist.tgt</target>", "", "<cg>: no <non-bonded> has a target"},
         {"table_b1.xvg", "b.xvg", "settings.xml:2: <bonded>: nothing says whether \"stick\" is"},
         {"table_b1.xvg", "table_b2.xvg", "votca/topol.top: table_b1.xvg is not beside it, nor has"},
+        {" <inverse>\n  <kBT>", BONDED("x", "1") " <inverse>\n  <kBT>",
+         "settings.xml:12: <bonded>: that of line 2 has the same table, table_b1.xvg: leave one"},
+        {" <inverse>\n  <kBT>", BONDED("stick", "2") " <inverse>\n  <kBT>",
+         "settings.xml:12: <bonded>: that of line 2 has the same name, stick: leave one"},
+        {" <inverse>\n  <kBT>", NON_BONDED("A", "A") " <inverse>\n  <kBT>",
+         "settings.xml:12: <non-bonded>: A-A has the target of line 9 already: leave one of them"},
+        {" <inverse>\n  <kBT>", NON_BONDED("B", "A") " <inverse>\n  <kBT>",
+         "settings.xml:12: <non-bonded>: it has the type B, but no <non-bonded> has a target for "
+         "the pair B-B: add it"},
+        {"<target>stick.dist.tgt", "<target>A-A.dist.tgt",
+         "settings.xml:4: <target>: votca/A-A.dist.tgt: the integral of p is 0.7"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         write_settings(state, cases[k].from, cases[k].to);
