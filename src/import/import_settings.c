@@ -74,6 +74,23 @@ static const struct xml_element *find_target(const struct xml_element *interacti
     return target ? target : mf_xml_find(interaction, "inverse.optimizer.rdf.target");
 }
 
+/// VOTCA calls files of an interaction by its name, as copies of its table are.
+static enum status check_name(const struct import_settings *settings,
+                              const struct xml_element *element, const char *name) {
+    const struct xml_element *other = NULL;
+    for (size_t k = 0; k < settings->pairs; k++)
+        if (strcmp(settings->pair[k].name, name) == 0)
+            other = settings->pair[k].element;
+    for (size_t k = 0; k < settings->groups; k++)
+        if (strcmp(settings->group[k].name, name) == 0)
+            other = settings->group[k].element;
+    if (other == NULL)
+        return STATUS_OK;
+    return mf_xml_fail(&settings->document, element,
+                       "that of line %zu has the name %s too: each needs a name of its own",
+                       other->line, name);
+}
+
 static bool is_pair(const struct import_pair *pair, const char *first, const char *second) {
     return (strcmp(pair->type[0], first) == 0 && strcmp(pair->type[1], second) == 0) ||
            (strcmp(pair->type[0], second) == 0 && strcmp(pair->type[1], first) == 0);
@@ -106,6 +123,7 @@ static enum status read_pair(struct import_settings *settings, const struct xml_
                                "\"%s\" can be no type: letters, digits and _", pair->type[k]);
     }
     TRY(check_new_pair(settings, pair));
+    TRY(check_name(settings, element, pair->name));
     if (max == NULL)
         return mf_xml_fail(&settings->document, element, "<max> is missing");
     TRY(read_number(settings, max, &pair->cutoff));
@@ -115,17 +133,13 @@ static enum status read_pair(struct import_settings *settings, const struct xml_
     return STATUS_OK;
 }
 
-/// Names are those of curves in a run file, numbers those of groups in a topology.
 static enum status check_new_group(const struct import_settings *settings,
                                    const struct import_group *group) {
     for (const struct import_group *other = settings->group; other < group; other++)
-        if (other->order == group->order &&
-            (strcmp(other->name, group->name) == 0 || other->table == group->table))
+        if (other->order == group->order && other->table == group->table)
             return mf_xml_fail(&settings->document, group->element,
-                               "that of line %zu has the same %s, %s: leave one of them out",
-                               other->element->line,
-                               other->table == group->table ? "table" : "name",
-                               other->table == group->table ? group->table_file : group->name);
+                               "that of line %zu has %s too: leave one of them out",
+                               other->element->line, group->table_file);
     return STATUS_OK;
 }
 
@@ -149,6 +163,7 @@ static enum status read_group(struct import_settings *settings, const struct xml
                            "table_d1",
                            group->name);
     group->order = (int)(strchr(letters, letter) - letters);
+    TRY(check_name(settings, element, group->name));
     TRY(check_new_group(settings, group));
     if (group->target)
         TRY(check_distribution(settings, group));

@@ -20,19 +20,28 @@ struct job {
 
 // Tables ------------------------------------------------------------------------------------------
 
-/// The name that a copy has in the folder.
-static const char *name_of(const char *file) {
-    const char *const slash = strrchr(file, '/');
-    return slash ? slash + 1 : file;
+/// Copies are called as VOTCA calls its own tables, by the names of interactions, which differ:
+/// those of files in several folders may not.
+enum { COPY_SIZE = 2 * COMPOSITION_NAME_SIZE + TOPOLOGY_NAME_SIZE + 16 };
+
+static void name_target(char copy[COPY_SIZE], const char *interaction) {
+    snprintf(copy, COPY_SIZE, "%s.dist.tgt", interaction);
 }
 
-static enum status copy(struct job *job, const char *file) {
+static void name_group_table(char copy[COPY_SIZE], const struct import_group *group) {
+    if (group->target)
+        name_target(copy, group->name);
+    else
+        snprintf(copy, COPY_SIZE, "table_%c%d.xvg", "bad"[group->order], group -> table);
+}
+
+static enum status copy(struct job *job, const char *file, const char *name) {
     char from[OUTPUT_PATH_SIZE], to[OUTPUT_PATH_SIZE];
     OWNED char *text = NULL;
     size_t length;
     struct output output;
     mf_import_settings_path(&job->settings, file, from);
-    snprintf(to, sizeof to, "%.3000s/%.1000s", job->own.folder, name_of(file));
+    snprintf(to, sizeof to, "%.3000s/%.1000s", job->own.folder, name);
     TRY(mf_text_file_read(from, &text, &length));
     TRY(mf_output_open(&output, to));
     fwrite(text, 1, length, output.stream);
@@ -41,20 +50,27 @@ static enum status copy(struct job *job, const char *file) {
 
 static enum status copy_tables(struct job *job) {
     const struct import_settings *const settings = &job->settings;
-    for (size_t k = 0; k < settings->pairs; k++)
-        TRY(copy(job, settings->pair[k].target->text));
-    for (size_t k = 0; k < settings->groups; k++)
-        TRY(copy(job, settings->group[k].target ? settings->group[k].target->text
-                                                : settings->group[k].table_file));
+    char name[COPY_SIZE];
+    for (size_t k = 0; k < settings->pairs; k++) {
+        name_target(name, settings->pair[k].name);
+        TRY(copy(job, settings->pair[k].target->text, name));
+    }
+    for (size_t k = 0; k < settings->groups; k++) {
+        const struct import_group *const group = &settings->group[k];
+        name_group_table(name, group);
+        TRY(copy(job, group->target ? group->target->text : group->table_file, name));
+    }
     return STATUS_OK;
 }
 
 // The run file ------------------------------------------------------------------------------------
 
-static void write_table(struct json_writer *writer, const char *key, const char *file,
+static void write_table(struct json_writer *writer, const char *key, const char *interaction,
                         double cutoff) {
+    char copy[COPY_SIZE];
+    name_target(copy, interaction);
     mf_json_begin(writer, key);
-    mf_json_write_text(writer, "file", name_of(file));
+    mf_json_write_text(writer, "file", copy);
     mf_json_write_text(writer, "format", "votca");
     if (isfinite(cutoff))
         mf_json_write_number(writer, "cutoff", cutoff);
@@ -64,7 +80,7 @@ static void write_table(struct json_writer *writer, const char *key, const char 
 static void write_pairs(const struct job *job) {
     const struct import_settings *const settings = &job->settings;
     if (job->system.beads.types == 1) {
-        write_table(job->writer, "rdf", settings->pair[0].target->text, settings->pair[0].cutoff);
+        write_table(job->writer, "rdf", settings->pair[0].name, settings->pair[0].cutoff);
         return;
     }
     mf_json_begin(job->writer, "rdf");
@@ -72,7 +88,7 @@ static void write_pairs(const struct job *job) {
         const struct import_pair *const pair = &settings->pair[k];
         char name[2 * COMPOSITION_NAME_SIZE];
         snprintf(name, sizeof name, "%s-%s", pair->type[0], pair->type[1]);
-        write_table(job->writer, name, pair->target->text, pair->cutoff);
+        write_table(job->writer, name, pair->name, pair->cutoff);
     }
     mf_json_end(job->writer);
 }
@@ -80,6 +96,7 @@ static void write_pairs(const struct job *job) {
 /// Groups of an order that have a target, or those that have a table.
 static void write_groups(const struct job *job, const char *key, int order, bool with_target) {
     const struct import_settings *const settings = &job->settings;
+    char copy[COPY_SIZE];
     bool begun = false;
     for (size_t k = 0; k < settings->groups; k++) {
         const struct import_group *const group = &settings->group[k];
@@ -89,12 +106,13 @@ static void write_groups(const struct job *job, const char *key, int order, bool
             mf_json_begin(job->writer, key);
         begun = true;
         if (with_target) {
-            write_table(job->writer, group->name, group->target->text, NAN);
+            write_table(job->writer, group->name, group->name, NAN);
             continue;
         }
+        name_group_table(copy, group);
         mf_json_begin(job->writer, group->name);
         mf_json_write_text(job->writer, "law", "table");
-        mf_json_write_text(job->writer, "file", name_of(group->table_file));
+        mf_json_write_text(job->writer, "file", copy);
         mf_json_end(job->writer);
     }
     if (begun)

@@ -130,6 +130,14 @@ static const char settings[] =
     " </inverse>\n"
     "</cg>\n";
 
+/// One line each.
+#define BONDED(name, table)                                                                        \
+    "<bonded><name>" name "</name><inverse><target>stick.dist.tgt</target><gromacs><table>"        \
+    "table_b" table ".xvg</table></gromacs></inverse></bonded>\n"
+#define NON_BONDED(name, first, second, target)                                                    \
+    "<non-bonded><name>" name "</name><type1>" first "</type1><type2>" second "</type2>"           \
+    "<max>0.8</max><inverse><target>" target "</target></inverse></non-bonded>\n"
+
 static const char topology[] =
     "[ defaults ]\n1 1 no 1.0 1.0\n[ atomtypes ]\nA 14.5 0.0 A 0 1\n[ moleculetype ]\ndimer 1\n"
     "[ atoms ]\n1 A 1 DIM A1 1 0.0 14.5\n2 A 1 DIM A2 1 0.0 14.5\n[ bonds ]\n1 2 8 1 1.0\n"
@@ -207,6 +215,34 @@ static void test_a_table_without_a_target_is_known(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+/// Targets of the same name in different folders, one of them called as the run file is.
+static void test_copies_are_named_by_interactions(void **state) {
+    static const char *const file[] = {"a/t.tgt", "b/t.tgt", "run.json"};
+    static const char *const copy[] = {"run/A-A.dist.tgt", "run/A-B.dist.tgt", "run/B-B.dist.tgt"};
+    char text[64], path[64];
+    write_settings(state, NULL, NULL);
+    assert_int_equal(mkdir("votca/a", 0700) | mkdir("votca/b", 0700), 0);
+    for (int k = 0; k < 3; k++) {
+        snprintf(text, sizeof text, "0.1 0 i\n0.3 1.%d i\n0.9 1 i\n", k);
+        snprintf(path, sizeof path, "votca/%s", file[k]);
+        write_text(state, path, text);
+    }
+    write_text(
+        state, "votca/settings.xml",
+        "<cg>" NON_BONDED("A-A", "A", "A", "a/t.tgt") NON_BONDED("A-B", "A", "B", "b/t.tgt")
+            NON_BONDED("B-B", "B", "B", "run.json") "<inverse><kBT>2.5</kBT></inverse></cg>");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run", "--count",
+                "A=20,B=30");
+    run_program_assert_code(&result, 0);
+    char *const run = temporary_folder_read("run/run.json");
+    for (int k = 0; k < 3; k++) {
+        snprintf(path, sizeof path, "votca/%s", file[k]);
+        assert_same(path, copy[k]);
+        assert_contains(run, copy[k] + strlen("run/"));
+    }
+    free(run);
+}
+
 /// Without files of GROMACS box and number come from the command line.
 static void test_box_and_counts_can_be_told(void **state) {
     write_settings(state, NULL, NULL);
@@ -233,14 +269,6 @@ static void test_box_and_counts_can_be_told(void **state) {
     run_program_assert_code(&result, 0);
 }
 
-/// One line each.
-#define BONDED(name, table)                                                                        \
-    "<bonded><name>" name "</name><inverse><target>stick.dist.tgt</target><gromacs><table>"        \
-    "table_b" table ".xvg</table></gromacs></inverse></bonded>\n"
-#define NON_BONDED(first, second)                                                                  \
-    "<non-bonded><name>other</name><type1>" first "</type1><type2>" second "</type2>"              \
-    "<max>0.8</max><inverse><target>A-A.dist.tgt</target></inverse></non-bonded>\n"
-
 static void test_faults_are_named_with_their_lines(void **state) {
     static const struct {
         const char *from, *to, *part;
@@ -258,12 +286,12 @@ static void test_faults_are_named_with_their_lines(void **state) {
         {"table_b1.xvg", "b.xvg", "settings.xml:2: <bonded>: nothing says whether \"stick\" is"},
         {"table_b1.xvg", "table_b2.xvg", "votca/topol.top: table_b1.xvg is not beside it, nor has"},
         {" <inverse>\n  <kBT>", BONDED("x", "1") " <inverse>\n  <kBT>",
-         "settings.xml:12: <bonded>: that of line 2 has the same table, table_b1.xvg: leave one"},
+         "settings.xml:12: <bonded>: that of line 2 has table_b1.xvg too: leave one"},
         {" <inverse>\n  <kBT>", BONDED("stick", "2") " <inverse>\n  <kBT>",
-         "settings.xml:12: <bonded>: that of line 2 has the same name, stick: leave one"},
-        {" <inverse>\n  <kBT>", NON_BONDED("A", "A") " <inverse>\n  <kBT>",
+         "settings.xml:12: <bonded>: that of line 2 has the name stick too: each needs"},
+        {" <inverse>\n  <kBT>", NON_BONDED("other", "A", "A", "A-A.dist.tgt") " <inverse>\n  <kBT>",
          "settings.xml:12: <non-bonded>: A-A has the target of line 9 already: leave one of them"},
-        {" <inverse>\n  <kBT>", NON_BONDED("B", "A") " <inverse>\n  <kBT>",
+        {" <inverse>\n  <kBT>", NON_BONDED("other", "B", "A", "A-A.dist.tgt") " <inverse>\n  <kBT>",
          "settings.xml:12: <non-bonded>: it has the type B, but no <non-bonded> has a target for "
          "the pair B-B: add it"},
         {"<target>stick.dist.tgt", "<target>A-A.dist.tgt",
@@ -290,9 +318,13 @@ static void test_faults_are_named_with_their_lines(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        TEST(test_a_map_in_xml_measures_what_ours_does), TEST(test_bonds_of_a_map_are_measured),
-        TEST(test_settings_become_a_run_file),           TEST(test_a_pressure_of_all_is_no_target),
-        TEST(test_a_table_without_a_target_is_known),    TEST(test_box_and_counts_can_be_told),
+        TEST(test_a_map_in_xml_measures_what_ours_does),
+        TEST(test_bonds_of_a_map_are_measured),
+        TEST(test_settings_become_a_run_file),
+        TEST(test_a_pressure_of_all_is_no_target),
+        TEST(test_a_table_without_a_target_is_known),
+        TEST(test_copies_are_named_by_interactions),
+        TEST(test_box_and_counts_can_be_told),
         TEST(test_faults_are_named_with_their_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
