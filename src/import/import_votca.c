@@ -138,15 +138,16 @@ static void write_target(const struct job *job) {
 static void write_masses(const struct job *job) {
     const struct composition *const beads = &job->system.beads;
     for (int type = 0; type < beads->types; type++)
-        if (!(job->system.mass[type] > 0))
+        if (!(mf_import_system_mass(&job->system, type) > 0))
             return;
     if (beads->types == 1) {
-        mf_json_write_number(job->writer, "mass", job->system.mass[0]);
+        mf_json_write_number(job->writer, "mass", mf_import_system_mass(&job->system, 0));
         return;
     }
     mf_json_begin(job->writer, "mass");
     for (int type = 0; type < beads->types; type++)
-        mf_json_write_number(job->writer, beads->name[type], job->system.mass[type]);
+        mf_json_write_number(job->writer, beads->name[type],
+                             mf_import_system_mass(&job->system, type));
     mf_json_end(job->writer);
 }
 
@@ -190,6 +191,17 @@ static enum status write_run(const struct job *job) {
 
 // What is said ------------------------------------------------------------------------------------
 
+/// A scene has one mass for each type.
+static void print_masses(const struct import_system *system, struct progress *progress) {
+    static const double rounding = 1e-3;
+    for (int type = 0; type < system->beads.types; type++) {
+        const struct import_mass *const mass = &system->mass[type];
+        if (mass->high - mass->low > rounding)
+            mf_import_print(progress, "masses of type %s differ (%g to %g): their mean is taken",
+                            system->beads.name[type], mass->low, mass->high);
+    }
+}
+
 static void print_read(const struct job *job) {
     struct progress *const progress = job->request->progress;
     const struct import_settings *const settings = &job->settings;
@@ -213,6 +225,7 @@ static void print_read(const struct job *job) {
         mf_import_print(progress, "read: %lld beads %s of %s", (long long)system->beads.count[type],
                         system->beads.name[type],
                         system->beads_file[0] ? system->beads_file : "--count");
+    print_masses(system, progress);
     mf_import_settings_print_rest(settings, progress);
     mf_import_print(progress, "mesofit fit %s/run.json --explain tells what a fit will do",
                     job->own.folder);

@@ -176,6 +176,7 @@ static void test_settings_become_a_run_file(void **state) {
     assert_contains(result.out, "read: pressure 1.5 bar\n");
     assert_contains(result.out, "read: box 4 4 5 nm of votca/conf.gro\n");
     assert_contains(result.out, "read: 1000 beads A of votca/topol.top\n");
+    assert_null(strstr(result.out, "differ"));
     assert_contains(result.out, "left out: bonded.min, bonded.max, bonded.step: ranges");
     assert_contains(result.out, "left out: inverse.method: the method is chosen");
     assert_contains(result.out, "left out: inverse.own, inverse.gromacs: no other program");
@@ -201,6 +202,24 @@ static void test_a_pressure_of_all_is_no_target(void **state) {
     run_program_assert_code(&result, 0);
     assert_contains(result.out, "left out: inverse.p_target: it is a target only inside "
                                 "<non-bonded><inverse>, with <post_update>pressure\n");
+}
+
+/// Molecules of 14 and 15.5 u, and of 18 u: the mean over all beads is the whole mass by their
+/// number, (200·14 + 200·15.5 + 100·18)/500.
+static void test_masses_of_a_type_are_averaged(void **state) {
+    write_settings(state, NULL, NULL);
+    write_text(state, "votca/topol.top",
+               "[ defaults ]\n1 1 no 1.0 1.0\n[ atomtypes ]\nA 14.5 0.0 A 0 1\n"
+               "[ moleculetype ]\ndimer 1\n[ atoms ]\n1 A 1 DIM A1 1 0.0 14.0\n"
+               "2 A 1 DIM A2 1 0.0 15.5\n[ bonds ]\n1 2 8 1 1.0\n"
+               "[ moleculetype ]\nsingle 1\n[ atoms ]\n1 A 1 ONE A1 1 0.0 18\n"
+               "[ system ]\nx\n[ molecules ]\ndimer 200\nsingle 100\n");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "masses of type A differ (14 to 18): their mean is taken\n");
+    char *const run = temporary_folder_read("run/run.json");
+    assert_contains(run, "\"mass\":\t15.4\n");
+    free(run);
 }
 
 /// A table of the topology that no <bonded> has is a known potential.
@@ -322,6 +341,7 @@ int main(void) {
         TEST(test_bonds_of_a_map_are_measured),
         TEST(test_settings_become_a_run_file),
         TEST(test_a_pressure_of_all_is_no_target),
+        TEST(test_masses_of_a_type_are_averaged),
         TEST(test_a_table_without_a_target_is_known),
         TEST(test_copies_are_named_by_interactions),
         TEST(test_box_and_counts_can_be_told),
