@@ -253,12 +253,26 @@ static void find_masses(struct import_system *system, const char *file, bool sca
     mf_trajectory_close(&atoms);
 }
 
+/// Beads of types beyond those of the settings have no targets.
+static enum status check_types(const struct import_system *system, int types,
+                               const struct import_settings *settings, const char *file) {
+    if (system->beads.types == types)
+        return STATUS_OK;
+    const char *const name = system->beads.name[types];
+    return mf_xml_fail(&settings->document, settings->document.root,
+                       "no <non-bonded> has a target for beads %s of %.1000s: add the pair %s-%s, "
+                       "and those with the other types",
+                       name, file, name, name);
+}
+
 static enum status read_topology(struct import_system *system, struct import_settings *settings,
                                  const char *file) {
     static const struct units nanometres = {0};
     struct molecules *const molecules = &system->molecules.molecules;
+    const int types = system->beads.types;
     struct gromacs_note note;
     TRY(mf_gromacs_topology_read(molecules, &system->beads, file, &nanometres, &note));
+    TRY(check_types(system, types, settings, file));
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++)
             TRY(name_group(settings, order, &molecules->group[order][g], file));

@@ -288,6 +288,22 @@ static void test_box_and_counts_can_be_told(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+static void test_beads_without_targets_are_named(void **state) {
+    write_settings(state, NULL, NULL);
+    write_text(state, "votca/topol.top",
+               "[ defaults ]\n1 1 no 1.0 1.0\n[ atomtypes ]\nA 14.5 0.0 A 0 1\nW 18 0.0 A 0 1\n"
+               "[ moleculetype ]\ndimer 1\n[ atoms ]\n1 A 1 DIM A1 1 0.0 14.5\n"
+               "2 A 1 DIM A2 1 0.0 14.5\n[ bonds ]\n1 2 8 1 1.0\n"
+               "[ moleculetype ]\nwater 1\n[ atoms ]\n1 W 1 SOL W 1 0.0 18\n"
+               "[ system ]\nx\n[ molecules ]\ndimer 200\nwater 100\n");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "votca/settings.xml:1: <cg>: no <non-bonded> has a target for "
+                                "beads W of votca/topol.top: add the pair W-W");
+    assert_int_equal(run_program_lines(result.err), 1);
+    assert_false(temporary_folder_exists("run"));
+}
+
 static void test_faults_are_named_with_their_lines(void **state) {
     static const struct {
         const char *from, *to, *part;
@@ -345,6 +361,7 @@ int main(void) {
         TEST(test_a_table_without_a_target_is_known),
         TEST(test_copies_are_named_by_interactions),
         TEST(test_box_and_counts_can_be_told),
+        TEST(test_beads_without_targets_are_named),
         TEST(test_faults_are_named_with_their_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
