@@ -15,6 +15,7 @@ struct job {
     struct import_settings settings;
     struct import_system system;
     struct tracked_files own;
+    struct input_files inputs; ///< tables and settings
     struct json_writer *writer;
 };
 
@@ -48,19 +49,43 @@ static enum status copy(struct job *job, const char *file, const char *name) {
     return mf_output_commit(&output);
 }
 
-static enum status copy_tables(struct job *job) {
+/// Do something with each table, whose copy is called `name`.
+static enum status each_table(struct job *job,
+                              enum status (*what)(struct job *job, const char *file,
+                                                  const char *name)) {
     const struct import_settings *const settings = &job->settings;
     char name[COPY_SIZE];
     for (size_t k = 0; k < settings->pairs; k++) {
         name_target(name, settings->pair[k].name);
-        TRY(copy(job, settings->pair[k].target->text, name));
+        TRY(what(job, settings->pair[k].target->text, name));
     }
     for (size_t k = 0; k < settings->groups; k++) {
         const struct import_group *const group = &settings->group[k];
         name_group_table(name, group);
-        TRY(copy(job, group->target ? group->target->text : group->table_file, name));
+        TRY(what(job, group->target ? group->target->text : group->table_file, name));
     }
     return STATUS_OK;
+}
+
+static enum status add_input(struct job *job, const char *file, const char *name) {
+    char from[OUTPUT_PATH_SIZE];
+    (void)name;
+    mf_import_settings_path(&job->settings, file, from);
+    return mf_input_files_add(&job->inputs, from);
+}
+
+static enum status reserve(struct job *job, const char *file, const char *name) {
+    (void)file;
+    return mf_tracked_files_reserve(&job->own, name);
+}
+
+/// No copy takes the place of a table that is read, as in the folder of the settings it would.
+static enum status protect_inputs(struct job *job) {
+    TRY(mf_input_files_add(&job->inputs, job->request->file));
+    TRY(each_table(job, add_input));
+    job->own.inputs = &job->inputs;
+    TRY(each_table(job, reserve));
+    return mf_tracked_files_reserve(&job->own, "run.json");
 }
 
 // The run file ------------------------------------------------------------------------------------
@@ -252,8 +277,9 @@ static enum status carry_out(struct job *job) {
     TRY(mf_import_settings_read(&job->settings, job->request->file));
     TRY(mf_import_system_find(&job->system, &job->settings, &job->request->options));
     TRY(open_folder(job));
+    TRY(protect_inputs(job));
     TRY(mf_tracked_files_begin(&job->own, 0));
-    TRY(copy_tables(job));
+    TRY(each_table(job, copy));
     job->writer = mf_json_writer_create();
     TRY(job->writer ? STATUS_OK : STATUS_NO_MEMORY);
     TRY(write_run(job));
@@ -267,6 +293,7 @@ enum status mf_import_votca(const struct import_request *request) {
     const enum status status = carry_out(&job);
     mf_json_writer_free(job.writer);
     mf_tracked_files_close(&job.own);
+    mf_input_files_clear(&job.inputs);
     mf_import_system_clear(&job.system);
     mf_import_settings_clear(&job.settings);
     return status;

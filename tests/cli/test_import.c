@@ -259,6 +259,12 @@ static void test_copies_are_named_by_interactions(void **state) {
         assert_same(path, copy[k]);
         assert_contains(run, copy[k] + strlen("run/"));
     }
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "votca", "--count",
+                "A=20,B=30", "--force");
+    run_program_assert_code(&result, 2); // nothing that is read is replaced, nothing written
+    assert_contains(result.err, "votca/run.json");
+    assert_same("votca/run.json", copy[2]);
+    assert_false(temporary_folder_exists("votca/B-B.dist.tgt"));
     free(run);
 }
 
