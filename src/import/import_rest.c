@@ -30,6 +30,8 @@ static const struct {
     {"bonded.inverse.do_potential", "all that has a target is found at once"},
     {"non-bonded.inverse.post_", "a fit needs no scripts between its steps"},
     {"bonded.inverse.post_", "a fit needs no scripts between its steps"},
+    {"inverse.p_target", "it is a target only inside <non-bonded><inverse>, with "
+                         "<post_update>pressure"},
     {"inverse.method", "the method is chosen; \"method\": {\"name\": …} asks for another"},
     {"inverse.iie", "the method is chosen; \"method\": {\"name\": …} asks for another"},
     {"non-bonded.inverse.imc", "imc takes its regularisation from the noise"},

@@ -2,6 +2,7 @@
 #include "import/import_settings.h"
 
 #include "io/votca.h"
+#include "targets/target_bonded.h"
 #include "trajectory/words.h"
 
 #include <math.h>
@@ -55,10 +56,54 @@ static enum status read_target(const struct import_settings *settings,
     return STATUS_OK;
 }
 
+/// A distribution has to be one, too.
+static enum status check_distribution(const struct import_settings *settings,
+                                      const struct import_group *group) {
+    char path[OUTPUT_PATH_SIZE];
+    mf_import_settings_path(settings, group->target->text, path);
+    const enum status status = mf_target_bonded_check_votca(path, group->order);
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "%s:%zu: <%s>", settings->document.file,
+                                group->target->line, group->target->name);
+    return STATUS_OK;
+}
+
 /// VOTCA's optimisers name the target of g(r) elsewhere.
 static const struct xml_element *find_target(const struct xml_element *interaction) {
     const struct xml_element *const target = mf_xml_find(interaction, "inverse.target");
     return target ? target : mf_xml_find(interaction, "inverse.optimizer.rdf.target");
+}
+
+/// VOTCA calls files of an interaction by its name, as copies of its table are.
+static enum status check_name(const struct import_settings *settings,
+                              const struct xml_element *element, const char *name) {
+    const struct xml_element *other = NULL;
+    for (size_t k = 0; k < settings->pairs; k++)
+        if (strcmp(settings->pair[k].name, name) == 0)
+            other = settings->pair[k].element;
+    for (size_t k = 0; k < settings->groups; k++)
+        if (strcmp(settings->group[k].name, name) == 0)
+            other = settings->group[k].element;
+    if (other == NULL)
+        return STATUS_OK;
+    return mf_xml_fail(&settings->document, element,
+                       "that of line %zu has the name %s too: each needs a name of its own",
+                       other->line, name);
+}
+
+static bool is_pair(const struct import_pair *pair, const char *first, const char *second) {
+    return (strcmp(pair->type[0], first) == 0 && strcmp(pair->type[1], second) == 0) ||
+           (strcmp(pair->type[0], second) == 0 && strcmp(pair->type[1], first) == 0);
+}
+
+static enum status check_new_pair(const struct import_settings *settings,
+                                  const struct import_pair *pair) {
+    for (const struct import_pair *other = settings->pair; other < pair; other++)
+        if (is_pair(other, pair->type[0], pair->type[1]))
+            return mf_xml_fail(&settings->document, pair->element,
+                               "%s-%s has the target of line %zu already: leave one of them out",
+                               pair->type[0], pair->type[1], other->target->line);
+    return STATUS_OK;
 }
 
 static enum status read_pair(struct import_settings *settings, const struct xml_element *element) {
@@ -77,6 +122,8 @@ static enum status read_pair(struct import_settings *settings, const struct xml_
             return mf_xml_fail(&settings->document, element,
                                "\"%s\" can be no type: letters, digits and _", pair->type[k]);
     }
+    TRY(check_new_pair(settings, pair));
+    TRY(check_name(settings, element, pair->name));
     if (max == NULL)
         return mf_xml_fail(&settings->document, element, "<max> is missing");
     TRY(read_number(settings, max, &pair->cutoff));
@@ -86,15 +133,25 @@ static enum status read_pair(struct import_settings *settings, const struct xml_
     return STATUS_OK;
 }
 
+static enum status check_new_group(const struct import_settings *settings,
+                                   const struct import_group *group) {
+    for (const struct import_group *other = settings->group; other < group; other++)
+        if (other->order == group->order && other->table == group->table)
+            return mf_xml_fail(&settings->document, group->element,
+                               "that of line %zu has %s too: leave one of them out",
+                               other->element->line, group->table_file);
+    return STATUS_OK;
+}
+
 /// "table_b1.xvg": table 1 of bonds.
 static enum status read_group(struct import_settings *settings, const struct xml_element *element) {
     static const char letters[] = "bad";
     struct import_group *const group = &settings->group[settings->groups];
     const struct xml_element *const file = mf_xml_find(element, "inverse.gromacs.table");
     char letter = '\0';
-    double end;
     if (mf_xml_find(element, "inverse") == NULL)
         return STATUS_OK;
+    group->element = element;
     group->target = find_target(element);
     TRY(read_name(settings, element, "name", group->name, sizeof group->name));
     snprintf(group->table_file, sizeof group->table_file, "%s", file ? file->text : "");
@@ -106,8 +163,10 @@ static enum status read_group(struct import_settings *settings, const struct xml
                            "table_d1",
                            group->name);
     group->order = (int)(strchr(letters, letter) - letters);
+    TRY(check_name(settings, element, group->name));
+    TRY(check_new_group(settings, group));
     if (group->target)
-        TRY(read_target(settings, group->target, &end));
+        TRY(check_distribution(settings, group));
     settings->groups++;
     return STATUS_OK;
 }
@@ -132,6 +191,30 @@ static enum status read_interactions(struct import_settings *settings,
                        : mf_xml_find(root, "inverse")
                            ? ""
                            : ": what csg_stat does by these, mesofit measure does by itself");
+}
+
+static bool has_pair(const struct import_settings *settings, const char *first,
+                     const char *second) {
+    for (size_t k = 0; k < settings->pairs; k++)
+        if (is_pair(&settings->pair[k], first, second))
+            return true;
+    return false;
+}
+
+/// All types interact: a fit needs g(r) of each pair of them.
+static enum status check_pairs(const struct import_settings *settings) {
+    for (size_t k = 0; k < 2 * settings->pairs; k++)
+        for (size_t j = 0; j <= k; j++) {
+            const struct import_pair *const pair = &settings->pair[k / 2];
+            const char *const first = settings->pair[j / 2].type[j % 2];
+            const char *const second = pair->type[k % 2];
+            if (!has_pair(settings, first, second))
+                return mf_xml_fail(&settings->document, pair->element,
+                                   "it has the type %s, but no <non-bonded> has a target for the "
+                                   "pair %s-%s: add it, its g(r) as <inverse><target>",
+                                   second, first, second);
+        }
+    return STATUS_OK;
 }
 
 /// With five digits: k_B T of 300 K has been written as 2.4942, 2.49435 and 2.494338785.
@@ -177,6 +260,7 @@ enum status mf_import_settings_read(struct import_settings *settings, const char
             strcmp(root->name, "cg_molecule") == 0 ? ": this is a map, which measure --map takes"
                                                    : "");
     TRY(read_interactions(settings, root));
+    TRY(check_pairs(settings));
     TRY(read_temperature(settings, root));
     return find_pressure(settings, root);
 }

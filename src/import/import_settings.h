@@ -20,7 +20,8 @@ struct import_pair {
 /// A bond, angle or dihedral: number `table` of those of its order in a topology of GROMACS.
 struct import_group {
     char name[TOPOLOGY_NAME_SIZE];
-    const struct xml_element *target; ///< or NULL: its potential is that table
+    const struct xml_element *element; ///< NULL: the settings lack it
+    const struct xml_element *target;  ///< or NULL: its potential is that table
     char table_file[64];
     int order, table;
 };

@@ -127,13 +127,20 @@ static enum status take_counts(struct import_system *system, const char *text) {
     return STATUS_OK;
 }
 
+static void add_mass(struct import_mass *mass, double of_bead, double beads) {
+    mass->low = mass->count > 0 ? fmin(mass->low, of_bead) : of_bead;
+    mass->high = mass->count > 0 ? fmax(mass->high, of_bead) : of_bead;
+    mass->sum += beads * of_bead;
+    mass->count += beads;
+}
+
 /// Masses of the atoms that are called as types are, or of the only type that there is.
 static void take_masses(struct import_system *system, const struct structure *structure) {
     const struct composition *const beads = &system->beads;
-    for (size_t k = structure->atoms; k-- > 0;) {
+    for (size_t k = 0; k < structure->atoms; k++) {
         const int type = beads->types == 1 ? 0 : find_type(beads, structure->atom[k].name);
         if (type < beads->types)
-            system->mass[type] = structure->atom[k].mass;
+            add_mass(&system->mass[type], structure->atom[k].mass, 1);
     }
 }
 
@@ -225,7 +232,7 @@ static void drop_single(struct import_system *system) {
     mf_topology_clear(&dropped);
 }
 
-/// Masses of the first bead of each type: a topology's atoms stand molecule after molecule, or, in
+/// Masses of the beads of each type: a topology's atoms stand molecule after molecule, or, in
 /// another order than that of the kinds, are known by their names.
 static void find_masses(struct import_system *system, const char *file, bool scattered) {
     const struct topology *const topology = &system->molecules.molecules.topology;
@@ -239,18 +246,33 @@ static void find_masses(struct import_system *system, const char *file, bool sca
         const struct topology_kind *const kind = &topology->kind[k];
         for (int bead = 0; bead < kind->beads; bead++)
             if (at + (size_t)bead < atoms.structure.atoms)
-                system->mass[kind->type[bead]] = atoms.structure.atom[at + (size_t)bead].mass;
+                add_mass(&system->mass[kind->type[bead]],
+                         atoms.structure.atom[at + (size_t)bead].mass, (double)kind->count);
         at += (size_t)(kind->count * kind->beads);
     }
     mf_trajectory_close(&atoms);
+}
+
+/// Beads of types beyond those of the settings have no targets.
+static enum status check_types(const struct import_system *system, int types,
+                               const struct import_settings *settings, const char *file) {
+    if (system->beads.types == types)
+        return STATUS_OK;
+    const char *const name = system->beads.name[types];
+    return mf_xml_fail(&settings->document, settings->document.root,
+                       "no <non-bonded> has a target for beads %s of %.1000s: add the pair %s-%s, "
+                       "and those with the other types",
+                       name, file, name, name);
 }
 
 static enum status read_topology(struct import_system *system, struct import_settings *settings,
                                  const char *file) {
     static const struct units nanometres = {0};
     struct molecules *const molecules = &system->molecules.molecules;
+    const int types = system->beads.types;
     struct gromacs_note note;
     TRY(mf_gromacs_topology_read(molecules, &system->beads, file, &nanometres, &note));
+    TRY(check_types(system, types, settings, file));
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++)
             TRY(name_group(settings, order, &molecules->group[order][g], file));
@@ -290,8 +312,6 @@ enum status mf_import_system_find(struct import_system *system, struct import_se
     struct trajectory_frame frame = {0};
     char path[OUTPUT_PATH_SIZE];
     *system = (struct import_system){0};
-    for (int type = 0; type < COMPOSITION_MAX_TYPES; type++)
-        system->mass[type] = NAN;
     const bool found = find_configuration(&configuration, &frame, settings, path);
     if (options->box[0] > 0)
         memcpy(system->box, options->box, sizeof system->box);
@@ -315,4 +335,9 @@ done:
 
 void mf_import_system_clear(struct import_system *system) {
     mf_scene_molecules_clear(&system->molecules);
+}
+
+double mf_import_system_mass(const struct import_system *system, int type) {
+    const struct import_mass *const mass = &system->mass[type];
+    return mass->count > 0 ? mass->sum / mass->count : NAN;
 }

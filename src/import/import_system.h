@@ -13,13 +13,15 @@ struct import_options {
 };
 
 struct import_system {
-    double box[3];                      ///< [nm]
-    char box_file[OUTPUT_PATH_SIZE];    ///< that has it; "": the command line
-    char beads_file[OUTPUT_PATH_SIZE];  ///< the same of the beads
-    struct composition beads;           ///< all of them
-    struct composition single;          ///< those that are in no molecule, of the same types
-    struct scene_molecules molecules;   ///< without kinds of one bead
-    double mass[COMPOSITION_MAX_TYPES]; ///< [u]; NAN: not known
+    double box[3];                     ///< [nm]
+    char box_file[OUTPUT_PATH_SIZE];   ///< that has it; "": the command line
+    char beads_file[OUTPUT_PATH_SIZE]; ///< the same of the beads
+    struct composition beads;          ///< all of them
+    struct composition single;         ///< those that are in no molecule, of the same types
+    struct scene_molecules molecules;  ///< without kinds of one bead
+    struct import_mass {
+        double sum, count, low, high; ///< [u] of the beads whose masses are given
+    } mass[COMPOSITION_MAX_TYPES];
 };
 
 /// Box of the first file beside the settings that has one: <inverse><gromacs><conf>, conf.gro, and
@@ -30,3 +32,6 @@ struct import_system {
 enum status mf_import_system_find(struct import_system *system, struct import_settings *settings,
                                   const struct import_options *options) MUST_USE;
 void mf_import_system_clear(struct import_system *system);
+
+/// Mean over the beads of a type [u]; NAN: not known.
+double mf_import_system_mass(const struct import_system *system, int type);

@@ -15,46 +15,87 @@ struct job {
     struct import_settings settings;
     struct import_system system;
     struct tracked_files own;
+    struct input_files inputs; ///< tables and settings
     struct json_writer *writer;
 };
 
 // Tables ------------------------------------------------------------------------------------------
 
-/// The name that a copy has in the folder.
-static const char *name_of(const char *file) {
-    const char *const slash = strrchr(file, '/');
-    return slash ? slash + 1 : file;
+/// Copies are called as VOTCA calls its own tables, by the names of interactions, which differ:
+/// those of files in several folders may not.
+enum { COPY_SIZE = 2 * COMPOSITION_NAME_SIZE + TOPOLOGY_NAME_SIZE + 16 };
+
+static void name_target(char copy[COPY_SIZE], const char *interaction) {
+    snprintf(copy, COPY_SIZE, "%s.dist.tgt", interaction);
 }
 
-static enum status copy(struct job *job, const char *file) {
+static void name_group_table(char copy[COPY_SIZE], const struct import_group *group) {
+    if (group->target)
+        name_target(copy, group->name);
+    else
+        snprintf(copy, COPY_SIZE, "table_%c%d.xvg", "bad"[group->order], group -> table);
+}
+
+static enum status copy(struct job *job, const char *file, const char *name) {
     char from[OUTPUT_PATH_SIZE], to[OUTPUT_PATH_SIZE];
     OWNED char *text = NULL;
     size_t length;
     struct output output;
     mf_import_settings_path(&job->settings, file, from);
-    snprintf(to, sizeof to, "%.3000s/%.1000s", job->own.folder, name_of(file));
+    snprintf(to, sizeof to, "%.3000s/%.1000s", job->own.folder, name);
     TRY(mf_text_file_read(from, &text, &length));
     TRY(mf_output_open(&output, to));
     fwrite(text, 1, length, output.stream);
     return mf_output_commit(&output);
 }
 
-static enum status copy_tables(struct job *job) {
+/// Do something with each table, whose copy is called `name`.
+static enum status each_table(struct job *job,
+                              enum status (*what)(struct job *job, const char *file,
+                                                  const char *name)) {
     const struct import_settings *const settings = &job->settings;
-    for (size_t k = 0; k < settings->pairs; k++)
-        TRY(copy(job, settings->pair[k].target->text));
-    for (size_t k = 0; k < settings->groups; k++)
-        TRY(copy(job, settings->group[k].target ? settings->group[k].target->text
-                                                : settings->group[k].table_file));
+    char name[COPY_SIZE];
+    for (size_t k = 0; k < settings->pairs; k++) {
+        name_target(name, settings->pair[k].name);
+        TRY(what(job, settings->pair[k].target->text, name));
+    }
+    for (size_t k = 0; k < settings->groups; k++) {
+        const struct import_group *const group = &settings->group[k];
+        name_group_table(name, group);
+        TRY(what(job, group->target ? group->target->text : group->table_file, name));
+    }
     return STATUS_OK;
+}
+
+static enum status add_input(struct job *job, const char *file, const char *name) {
+    char from[OUTPUT_PATH_SIZE];
+    (void)name;
+    mf_import_settings_path(&job->settings, file, from);
+    return mf_input_files_add(&job->inputs, from);
+}
+
+static enum status reserve(struct job *job, const char *file, const char *name) {
+    (void)file;
+    return mf_tracked_files_reserve(&job->own, name);
+}
+
+/// No copy takes the place of a table that is read, as in the folder of the settings it would.
+static enum status protect_inputs(struct job *job) {
+    TRY(mf_input_files_add(&job->inputs, job->request->file));
+    TRY(each_table(job, add_input));
+    job->own.inputs = &job->inputs;
+    TRY(each_table(job, reserve));
+    return mf_tracked_files_reserve(&job->own, "run.json");
 }
 
 // The run file ------------------------------------------------------------------------------------
 
-static void write_table(struct json_writer *writer, const char *key, const char *file,
+static void write_table(struct json_writer *writer, const char *key, const char *interaction,
                         double cutoff) {
+    char copy[COPY_SIZE];
+    name_target(copy, interaction);
     mf_json_begin(writer, key);
-    mf_json_write_text(writer, "file", name_of(file));
+    mf_json_write_text(writer, "file", copy);
     mf_json_write_text(writer, "format", "votca");
     if (isfinite(cutoff))
         mf_json_write_number(writer, "cutoff", cutoff);
@@ -64,7 +105,7 @@ static void write_table(struct json_writer *writer, const char *key, const char 
 static void write_pairs(const struct job *job) {
     const struct import_settings *const settings = &job->settings;
     if (job->system.beads.types == 1) {
-        write_table(job->writer, "rdf", settings->pair[0].target->text, settings->pair[0].cutoff);
+        write_table(job->writer, "rdf", settings->pair[0].name, settings->pair[0].cutoff);
         return;
     }
     mf_json_begin(job->writer, "rdf");
@@ -72,7 +113,7 @@ static void write_pairs(const struct job *job) {
         const struct import_pair *const pair = &settings->pair[k];
         char name[2 * COMPOSITION_NAME_SIZE];
         snprintf(name, sizeof name, "%s-%s", pair->type[0], pair->type[1]);
-        write_table(job->writer, name, pair->target->text, pair->cutoff);
+        write_table(job->writer, name, pair->name, pair->cutoff);
     }
     mf_json_end(job->writer);
 }
@@ -80,6 +121,7 @@ static void write_pairs(const struct job *job) {
 /// Groups of an order that have a target, or those that have a table.
 static void write_groups(const struct job *job, const char *key, int order, bool with_target) {
     const struct import_settings *const settings = &job->settings;
+    char copy[COPY_SIZE];
     bool begun = false;
     for (size_t k = 0; k < settings->groups; k++) {
         const struct import_group *const group = &settings->group[k];
@@ -89,12 +131,13 @@ static void write_groups(const struct job *job, const char *key, int order, bool
             mf_json_begin(job->writer, key);
         begun = true;
         if (with_target) {
-            write_table(job->writer, group->name, group->target->text, NAN);
+            write_table(job->writer, group->name, group->name, NAN);
             continue;
         }
+        name_group_table(copy, group);
         mf_json_begin(job->writer, group->name);
         mf_json_write_text(job->writer, "law", "table");
-        mf_json_write_text(job->writer, "file", name_of(group->table_file));
+        mf_json_write_text(job->writer, "file", copy);
         mf_json_end(job->writer);
     }
     if (begun)
@@ -120,15 +163,16 @@ static void write_target(const struct job *job) {
 static void write_masses(const struct job *job) {
     const struct composition *const beads = &job->system.beads;
     for (int type = 0; type < beads->types; type++)
-        if (!(job->system.mass[type] > 0))
+        if (!(mf_import_system_mass(&job->system, type) > 0))
             return;
     if (beads->types == 1) {
-        mf_json_write_number(job->writer, "mass", job->system.mass[0]);
+        mf_json_write_number(job->writer, "mass", mf_import_system_mass(&job->system, 0));
         return;
     }
     mf_json_begin(job->writer, "mass");
     for (int type = 0; type < beads->types; type++)
-        mf_json_write_number(job->writer, beads->name[type], job->system.mass[type]);
+        mf_json_write_number(job->writer, beads->name[type],
+                             mf_import_system_mass(&job->system, type));
     mf_json_end(job->writer);
 }
 
@@ -172,6 +216,17 @@ static enum status write_run(const struct job *job) {
 
 // What is said ------------------------------------------------------------------------------------
 
+/// A scene has one mass for each type.
+static void print_masses(const struct import_system *system, struct progress *progress) {
+    static const double rounding = 1e-3;
+    for (int type = 0; type < system->beads.types; type++) {
+        const struct import_mass *const mass = &system->mass[type];
+        if (mass->high - mass->low > rounding)
+            mf_import_print(progress, "masses of type %s differ (%g to %g): their mean is taken",
+                            system->beads.name[type], mass->low, mass->high);
+    }
+}
+
 static void print_read(const struct job *job) {
     struct progress *const progress = job->request->progress;
     const struct import_settings *const settings = &job->settings;
@@ -195,6 +250,7 @@ static void print_read(const struct job *job) {
         mf_import_print(progress, "read: %lld beads %s of %s", (long long)system->beads.count[type],
                         system->beads.name[type],
                         system->beads_file[0] ? system->beads_file : "--count");
+    print_masses(system, progress);
     mf_import_settings_print_rest(settings, progress);
     mf_import_print(progress, "mesofit fit %s/run.json --explain tells what a fit will do",
                     job->own.folder);
@@ -221,8 +277,9 @@ static enum status carry_out(struct job *job) {
     TRY(mf_import_settings_read(&job->settings, job->request->file));
     TRY(mf_import_system_find(&job->system, &job->settings, &job->request->options));
     TRY(open_folder(job));
+    TRY(protect_inputs(job));
     TRY(mf_tracked_files_begin(&job->own, 0));
-    TRY(copy_tables(job));
+    TRY(each_table(job, copy));
     job->writer = mf_json_writer_create();
     TRY(job->writer ? STATUS_OK : STATUS_NO_MEMORY);
     TRY(write_run(job));
@@ -236,6 +293,7 @@ enum status mf_import_votca(const struct import_request *request) {
     const enum status status = carry_out(&job);
     mf_json_writer_free(job.writer);
     mf_tracked_files_close(&job.own);
+    mf_input_files_clear(&job.inputs);
     mf_import_system_clear(&job.system);
     mf_import_settings_clear(&job.settings);
     return status;

@@ -60,11 +60,11 @@ static enum status read_columns(const struct target_bonded_parameters *p, int or
 }
 
 /// From nm or radians.
-static enum status read_votca(const struct target_bonded_parameters *p, int order,
-                              const struct units *units, struct target_rows *rows) {
+static enum status read_votca(const char *file, int order, const struct units *units,
+                              struct target_rows *rows) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const double unit = kind->is_length ? 1 / units->length : 1 / kind->scale;
-    TRY(mf_target_rows_read_votca(rows, p->file));
+    TRY(mf_target_rows_read_votca(rows, file));
     const double last = rows->x[rows->count - 1];
     for (size_t k = 0; k < rows->count; k++) {
         rows->x[k] *= unit;
@@ -75,7 +75,7 @@ static enum status read_votca(const struct target_bonded_parameters *p, int orde
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: the angles end at %g, as if in degrees; VOTCA's are in radians",
-                          p->file, last);
+                          file, last);
 }
 
 // Checks ------------------------------------------------------------------------------------------
@@ -134,6 +134,22 @@ static enum status normalise(struct target_rows *rows, const char *file) {
                               file, sum);
     rescale(rows, 1 / sum);
     return STATUS_OK;
+}
+
+static enum status check(struct target_rows *rows, int order, const char *file) {
+    TRY(check_rows(rows, file));
+    TRY(check_range(rows, order, file));
+    return normalise(rows, file);
+}
+
+enum status mf_target_bonded_check_votca(const char *file, int order) {
+    static const struct units nanometres = {.length = 1};
+    struct target_rows rows = {0};
+    enum status status = read_votca(file, order, &nanometres, &rows);
+    if (status == STATUS_OK)
+        status = check(&rows, order, file);
+    mf_target_rows_clear(&rows);
+    return status;
 }
 
 // Bins --------------------------------------------------------------------------------------------
@@ -277,11 +293,9 @@ static enum status load(struct target_bonded *target, int order, const char *nam
     const struct target_bonded_parameters *p = &target->parameters;
     const bool circle = mf_bonded_kinds[order]->periodic;
     struct target_rows rows = {0};
-    CHECK(p->format == TARGET_ROWS_VOTCA ? read_votca(p, order, units, &rows)
+    CHECK(p->format == TARGET_ROWS_VOTCA ? read_votca(p->file, order, units, &rows)
                                          : read_columns(p, order, name, units, &rows));
-    CHECK(check_rows(&rows, p->file));
-    CHECK(check_range(&rows, order, p->file));
-    CHECK(normalise(&rows, p->file));
+    CHECK(check(&rows, order, p->file));
     double width = width_of(&rows);
     if (circle)
         CHECK(close_circle(&rows, &width, p->file));

@@ -37,4 +37,9 @@ struct target_bonded {
 enum status mf_target_bonded_read(struct target_bonded *target, int order, const char *name,
                                   struct json_object *object, const struct units *units,
                                   int dimensions) MUST_USE;
+
+/// Look for the faults of a file in VOTCA's format without a scene. Fails: BAD_INPUT, IO,
+/// NO_MEMORY. Tested: cli/test_import.
+enum status mf_target_bonded_check_votca(const char *file, int order) MUST_USE;
+
 void mf_target_bonded_clear(struct target_bonded *target);

@@ -29,13 +29,28 @@ static int find_bead(const struct xml_document *document, const char *name, size
     return 0;
 }
 
+/// A group of the same name is a member of the same JSON object.
+static enum status check_name(const struct xml_document *document,
+                              const struct xml_element *group) {
+    const char *const name = mf_xml_text(group, "name");
+    const struct xml_element *other = mf_xml_find(group->parent, group->name);
+    if (name[0] == '\0')
+        return mf_xml_fail(document, group, "<name> is missing or empty");
+    for (; other != group; other = mf_xml_next(other))
+        if (strcmp(mf_xml_text(other, "name"), name) == 0)
+            return mf_xml_fail(document, group,
+                               "that of line %zu has the name \"%.60s\" too: give it another, or "
+                               "all beads in one <beads>",
+                               other->line, name);
+    return STATUS_OK;
+}
+
 static enum status write_group(struct json_writer *writer, const struct xml_document *document,
                                const struct xml_element *group, size_t width) {
     const char *at = mf_xml_text(group, "beads"), *const name = mf_xml_text(group, "name");
     OWNED int *number = NULL;
     size_t count = 0, capacity = 0;
-    if (name[0] == '\0')
-        return mf_xml_fail(document, group, "<name> is missing or empty");
+    TRY(check_name(document, group));
     for (size_t length; at += strspn(at, " \t\n\r"), (length = strcspn(at, " \t\n\r")) > 0;
          at += length) {
         const int bead = find_bead(document, at, length);

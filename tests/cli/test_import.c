@@ -130,6 +130,14 @@ static const char settings[] =
     " </inverse>\n"
     "</cg>\n";
 
+/// One line each.
+#define BONDED(name, table)                                                                        \
+    "<bonded><name>" name "</name><inverse><target>stick.dist.tgt</target><gromacs><table>"        \
+    "table_b" table ".xvg</table></gromacs></inverse></bonded>\n"
+#define NON_BONDED(name, first, second, target)                                                    \
+    "<non-bonded><name>" name "</name><type1>" first "</type1><type2>" second "</type2>"           \
+    "<max>0.8</max><inverse><target>" target "</target></inverse></non-bonded>\n"
+
 static const char topology[] =
     "[ defaults ]\n1 1 no 1.0 1.0\n[ atomtypes ]\nA 14.5 0.0 A 0 1\n[ moleculetype ]\ndimer 1\n"
     "[ atoms ]\n1 A 1 DIM A1 1 0.0 14.5\n2 A 1 DIM A2 1 0.0 14.5\n[ bonds ]\n1 2 8 1 1.0\n"
@@ -168,6 +176,7 @@ static void test_settings_become_a_run_file(void **state) {
     assert_contains(result.out, "read: pressure 1.5 bar\n");
     assert_contains(result.out, "read: box 4 4 5 nm of votca/conf.gro\n");
     assert_contains(result.out, "read: 1000 beads A of votca/topol.top\n");
+    assert_null(strstr(result.out, "differ"));
     assert_contains(result.out, "left out: bonded.min, bonded.max, bonded.step: ranges");
     assert_contains(result.out, "left out: inverse.method: the method is chosen");
     assert_contains(result.out, "left out: inverse.own, inverse.gromacs: no other program");
@@ -187,6 +196,32 @@ static void test_settings_become_a_run_file(void **state) {
     assert_contains(result.err, "votca: the folder holds files that are not of an import");
 }
 
+static void test_a_pressure_of_all_is_no_target(void **state) {
+    write_settings(state, "<own>3</own>", "<p_target>1</p_target>");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "left out: inverse.p_target: it is a target only inside "
+                                "<non-bonded><inverse>, with <post_update>pressure\n");
+}
+
+/// Molecules of 14 and 15.5 u, and of 18 u: the mean over all beads is the whole mass by their
+/// number, (200·14 + 200·15.5 + 100·18)/500.
+static void test_masses_of_a_type_are_averaged(void **state) {
+    write_settings(state, NULL, NULL);
+    write_text(state, "votca/topol.top",
+               "[ defaults ]\n1 1 no 1.0 1.0\n[ atomtypes ]\nA 14.5 0.0 A 0 1\n"
+               "[ moleculetype ]\ndimer 1\n[ atoms ]\n1 A 1 DIM A1 1 0.0 14.0\n"
+               "2 A 1 DIM A2 1 0.0 15.5\n[ bonds ]\n1 2 8 1 1.0\n"
+               "[ moleculetype ]\nsingle 1\n[ atoms ]\n1 A 1 ONE A1 1 0.0 18\n"
+               "[ system ]\nx\n[ molecules ]\ndimer 200\nsingle 100\n");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "masses of type A differ (14 to 18): their mean is taken\n");
+    char *const run = temporary_folder_read("run/run.json");
+    assert_contains(run, "\"mass\":\t15.4\n");
+    free(run);
+}
+
 /// A table of the topology that no <bonded> has is a known potential.
 static void test_a_table_without_a_target_is_known(void **state) {
     write_settings(state, "<target>stick.dist.tgt</target>", "");
@@ -197,6 +232,40 @@ static void test_a_table_without_a_target_is_known(void **state) {
     assert_contains(result.out, "read: stick: bond with the known potential table_b1.xvg\n");
     RUN_PROGRAM(&result, "fit", "run/run.json", "--explain");
     run_program_assert_code(&result, 0);
+}
+
+/// Targets of the same name in different folders, one of them called as the run file is.
+static void test_copies_are_named_by_interactions(void **state) {
+    static const char *const file[] = {"a/t.tgt", "b/t.tgt", "run.json"};
+    static const char *const copy[] = {"run/A-A.dist.tgt", "run/A-B.dist.tgt", "run/B-B.dist.tgt"};
+    char text[64], path[64];
+    write_settings(state, NULL, NULL);
+    assert_int_equal(mkdir("votca/a", 0700) | mkdir("votca/b", 0700), 0);
+    for (int k = 0; k < 3; k++) {
+        snprintf(text, sizeof text, "0.1 0 i\n0.3 1.%d i\n0.9 1 i\n", k);
+        snprintf(path, sizeof path, "votca/%s", file[k]);
+        write_text(state, path, text);
+    }
+    write_text(
+        state, "votca/settings.xml",
+        "<cg>" NON_BONDED("A-A", "A", "A", "a/t.tgt") NON_BONDED("A-B", "A", "B", "b/t.tgt")
+            NON_BONDED("B-B", "B", "B", "run.json") "<inverse><kBT>2.5</kBT></inverse></cg>");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run", "--count",
+                "A=20,B=30");
+    run_program_assert_code(&result, 0);
+    char *const run = temporary_folder_read("run/run.json");
+    for (int k = 0; k < 3; k++) {
+        snprintf(path, sizeof path, "votca/%s", file[k]);
+        assert_same(path, copy[k]);
+        assert_contains(run, copy[k] + strlen("run/"));
+    }
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "votca", "--count",
+                "A=20,B=30", "--force");
+    run_program_assert_code(&result, 2); // nothing that is read is replaced, nothing written
+    assert_contains(result.err, "votca/run.json");
+    assert_same("votca/run.json", copy[2]);
+    assert_false(temporary_folder_exists("votca/B-B.dist.tgt"));
+    free(run);
 }
 
 /// Without files of GROMACS box and number come from the command line.
@@ -225,6 +294,22 @@ static void test_box_and_counts_can_be_told(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+static void test_beads_without_targets_are_named(void **state) {
+    write_settings(state, NULL, NULL);
+    write_text(state, "votca/topol.top",
+               "[ defaults ]\n1 1 no 1.0 1.0\n[ atomtypes ]\nA 14.5 0.0 A 0 1\nW 18 0.0 A 0 1\n"
+               "[ moleculetype ]\ndimer 1\n[ atoms ]\n1 A 1 DIM A1 1 0.0 14.5\n"
+               "2 A 1 DIM A2 1 0.0 14.5\n[ bonds ]\n1 2 8 1 1.0\n"
+               "[ moleculetype ]\nwater 1\n[ atoms ]\n1 W 1 SOL W 1 0.0 18\n"
+               "[ system ]\nx\n[ molecules ]\ndimer 200\nwater 100\n");
+    RUN_PROGRAM(&result, "import", "votca", "votca/settings.xml", "-o", "run");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "votca/settings.xml:1: <cg>: no <non-bonded> has a target for "
+                                "beads W of votca/topol.top: add the pair W-W");
+    assert_int_equal(run_program_lines(result.err), 1);
+    assert_false(temporary_folder_exists("run"));
+}
+
 static void test_faults_are_named_with_their_lines(void **state) {
     static const struct {
         const char *from, *to, *part;
@@ -241,6 +326,17 @@ static void test_faults_are_named_with_their_lines(void **state) {
         {"<target>A-A.dist.tgt</target>", "", "<cg>: no <non-bonded> has a target"},
         {"table_b1.xvg", "b.xvg", "settings.xml:2: <bonded>: nothing says whether \"stick\" is"},
         {"table_b1.xvg", "table_b2.xvg", "votca/topol.top: table_b1.xvg is not beside it, nor has"},
+        {" <inverse>\n  <kBT>", BONDED("x", "1") " <inverse>\n  <kBT>",
+         "settings.xml:12: <bonded>: that of line 2 has table_b1.xvg too: leave one"},
+        {" <inverse>\n  <kBT>", BONDED("stick", "2") " <inverse>\n  <kBT>",
+         "settings.xml:12: <bonded>: that of line 2 has the name stick too: each needs"},
+        {" <inverse>\n  <kBT>", NON_BONDED("other", "A", "A", "A-A.dist.tgt") " <inverse>\n  <kBT>",
+         "settings.xml:12: <non-bonded>: A-A has the target of line 9 already: leave one of them"},
+        {" <inverse>\n  <kBT>", NON_BONDED("other", "B", "A", "A-A.dist.tgt") " <inverse>\n  <kBT>",
+         "settings.xml:12: <non-bonded>: it has the type B, but no <non-bonded> has a target for "
+         "the pair B-B: add it"},
+        {"<target>stick.dist.tgt", "<target>A-A.dist.tgt",
+         "settings.xml:4: <target>: votca/A-A.dist.tgt: the integral of p is 0.7"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         write_settings(state, cases[k].from, cases[k].to);
@@ -266,8 +362,12 @@ int main(void) {
         TEST(test_a_map_in_xml_measures_what_ours_does),
         TEST(test_bonds_of_a_map_are_measured),
         TEST(test_settings_become_a_run_file),
+        TEST(test_a_pressure_of_all_is_no_target),
+        TEST(test_masses_of_a_type_are_averaged),
         TEST(test_a_table_without_a_target_is_known),
+        TEST(test_copies_are_named_by_interactions),
         TEST(test_box_and_counts_can_be_told),
+        TEST(test_beads_without_targets_are_named),
         TEST(test_faults_are_named_with_their_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

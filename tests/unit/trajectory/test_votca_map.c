@@ -183,6 +183,8 @@ static void test_faults_are_named_with_their_lines(void **state) {
         {" b1\n a1 ", "b1 c1", "map.xml:12: <bond>: <cg_beads> has no bead \"c1\""},
         {" b1\n a1 ", "b1", "map.xml:12: <bond>: <beads> names 1 beads"},
         {" b1\n a1 ", "", "map.xml:12: <bond>: <beads> names 0 beads"},
+        {"</bond>", "</bond>\n<bond><name>stick</name><beads>b1 a1</beads></bond>",
+         "map.xml:14: <bond>: that of line 12 has the name \"stick\" too: give it another"},
     };
     for (size_t k = 0; k < sizeof bonds / sizeof *bonds; k++)
         assert_fails(mf_votca_map_bonds(&json, write_map(state, bonds[k].from, bonds[k].to)),
