@@ -152,7 +152,7 @@ const char *mf_units_name(const struct units *units, const char *unit, char *nam
 
 const char *mf_units_suffix(const struct units *units, const char *unit, char *name) {
     name[0] = name[1] = '\0';
-    if (!mf_units_are_physical(units))
+    if (!mf_units_are_physical(units) || strcmp(unit, "1") == 0)
         return name;
     char text[UNITS_NAME_SIZE];
     mf_units_name(units, unit, text);

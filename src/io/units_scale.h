@@ -63,8 +63,8 @@ double mf_units_factor(const struct units *units, const char *unit);
 /// Returns `name`.
 const char *mf_units_name(const struct units *units, const char *unit, char *name);
 
-/// " nm", the name of a unit after a number of a message, or "" in reduced units, which are left
-/// out.
+/// " nm", the name of a unit after a number of a message, or "" in reduced units and of pure
+/// numbers, "1", which are left out.
 const char *mf_units_suffix(const struct units *units, const char *unit, char *name);
 
 /// A number of a reduced unit with its error, for a person: "0.29(1) nm^2/ps". Returns `text`.

@@ -202,6 +202,17 @@ static void test_units_name_is_what_a_person_would_write(void **state) {
     assert_string_equal(mf_units_name(&other, "k_B T_0/lambda^d", name), "kJ/mol/nm^2");
 }
 
+/// In a message a pure number has no unit, a density has that of the file, and so has its number.
+static void test_units_measured_has_the_unit_of_the_file(void **state) {
+    (void)state;
+    struct units units = argon;
+    char text[UNITS_MEASURED_SIZE];
+    units.length = 0.5;
+    assert_string_equal(mf_units_measured(&units, "1", 4.5828, 0.0054, text), "4.5828(54)");
+    assert_string_equal(mf_units_measured(&units, "1/lambda^3", 0.5, 0.01, text),
+                        "4.000(80) 1/nm^3");
+}
+
 /// A spoken name, read again as the unit of a heading, is one over the factor.
 static void test_units_from_takes_back_what_name_gives(void **state) {
     (void)state;
@@ -295,6 +306,7 @@ int main(void) {
         cmocka_unit_test(test_units_factor_is_that_of_engines),
         cmocka_unit_test(test_units_factor_is_1_for_what_no_scene_sets),
         cmocka_unit_test(test_units_name_is_what_a_person_would_write),
+        cmocka_unit_test(test_units_measured_has_the_unit_of_the_file),
         cmocka_unit_test(test_units_from_takes_back_what_name_gives),
         cmocka_unit_test(test_units_file_value_is_what_was_read),
         TEST(test_units_are_those_of_molecules),
