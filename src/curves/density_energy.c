@@ -3,6 +3,7 @@
 
 #include "curves/expression_text.h"
 #include "curves/sampled.h"
+#include "curves/weight.h"
 
 #include <math.h>
 
@@ -136,6 +137,25 @@ const struct curve_family mf_density_energy_many_body_dpd = {
     .cutoff = endless,
     .scale = dpd_scale,
 };
+
+enum status mf_density_energy_check_weight(const struct curve *curve, const struct curve *weight) {
+    static const double rounding = 1e-9;
+    if (curve->family != &mf_density_energy_many_body_dpd)
+        return STATUS_OK;
+    if (weight->family != &mf_weight_many_body_dpd)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the law \"many-body-dpd\" needs the weight \"many-body-dpd\", not "
+                              "\"%s\": with that, take a \"polynomial\"",
+                              weight->family->name);
+    const struct dpd *p = curve->parameters;
+    const double unit = pow(or_one(p->scales.density), p->dimensions == 2 ? 1.0 / 2 : 1.0 / 3);
+    const double cutoff = mf_curve_cutoff(weight) / unit;
+    if (fabs(p->cutoff - cutoff) <= rounding * cutoff)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "the cutoff %g is not that of the weight, %g: give both the same",
+                          p->cutoff, cutoff);
+}
 
 // Formulas ----------------------------------------------------------------------------------------
 

@@ -40,6 +40,11 @@ struct density_energy {
 /// Tell the law "many-body-dpd" how many dimensions a scene has; others have no use for it.
 void mf_density_energy_set_dimensions(const struct curve *curve, int dimensions);
 
+/// Forces of the law "many-body-dpd" are what it promises with the weight of that name and the same
+/// cutoff alone. Fails: BAD_INPUT with another one. Tested: cli/test_many_body.
+enum status mf_density_energy_check_weight(const struct curve *curve,
+                                           const struct curve *weight) MUST_USE;
+
 /// Fails: NO_MEMORY; BAD_INPUT where the parameters do not go together.
 enum status mf_density_energy_init(struct density_energy *energy,
                                    const struct curve *curve) MUST_USE;

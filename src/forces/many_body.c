@@ -242,20 +242,14 @@ static size_t spans(void *own, struct memory_span *spans) {
     return 1;
 }
 
-bool mf_many_body_remark(const struct many_body *many_body, const void *own, int term,
-                         char line[MANY_BODY_REMARK_SIZE]) {
+bool mf_many_body_was_beyond(const struct many_body *many_body, const void *own, int term,
+                             double extreme[2]) {
     const struct extremes *found = &((const struct state *)own)->extremes[term];
-    const struct many_body_term *of = &many_body->term[term];
-    const struct density_energy *energy = &of->energy;
-    if (!energy->tabulated || found->low > found->high ||
-        (found->low >= energy->low && found->high <= energy->high))
-        return false;
-    const bool never = found->high < energy->low || found->low > energy->high;
-    snprintf(line, MANY_BODY_REMARK_SIZE,
-             "many_body.%s.energy: densities were %.4g to %.4g, %s the table from %.4g to %.4g%s",
-             of->name, found->low, found->high, never ? "never in" : "and so beyond", energy->low,
-             energy->high, ": the energy was continued as a straight line there");
-    return true;
+    const struct density_energy *energy = &many_body->term[term].energy;
+    extreme[0] = found->low;
+    extreme[1] = found->high;
+    return energy->tabulated && found->low <= found->high &&
+           (found->low < energy->low || found->high > energy->high);
 }
 
 const struct interaction mf_many_body = {

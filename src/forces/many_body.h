@@ -37,12 +37,11 @@ void mf_many_body_clear(struct many_body *many_body);
 /// Those among the interactions of a scene, or NULL.
 const struct many_body *mf_many_body_find(const struct interaction_choice *interactions, int count);
 
-/// What a term was found to do beyond the ends of its table since the begin, in one line that names
-/// it; false: nothing.
-/// @param[in] state  of the interaction
-enum { MANY_BODY_REMARK_SIZE = 256 };
-bool mf_many_body_remark(const struct many_body *many_body, const void *state, int term,
-                         char line[MANY_BODY_REMARK_SIZE]);
+/// Whether a term was beyond the ends of its table since the begin.
+/// @param[in]  state    of the interaction
+/// @param[out] extreme  the smallest and the largest density that occurred [1/λ^d, or 1]
+bool mf_many_body_was_beyond(const struct many_body *many_body, const void *state, int term,
+                             double extreme[2]);
 
 /// ρ of all beads in a term, by place, shape [count], as of the last pass. Of beads that are not
 /// central it is the density that they would have.

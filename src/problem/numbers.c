@@ -141,6 +141,7 @@ static enum status tabulate_density(const struct inverse_problem *problem, int t
     CHECK(mf_weight_tabulate(&term->weight, &weight));
     CHECK(put(problem, INVERSE_OF_DENSITY_ENERGY, t, &problem->density_energy.curve[t], value,
               &energy));
+    CHECK(mf_density_energy_check_weight(&energy, &weight));
     CHECK(mf_density_energy_init(&term->energy, &energy));
 done:
     mf_memory_free(weight.parameters);

@@ -135,6 +135,25 @@ static const char *density_unit(const struct curve *weight, int dimensions) {
     return dimensions == 2 ? "1/lambda^2" : "1/lambda^3";
 }
 
+bool mf_scene_many_body_remark(const struct scene_many_body *many_body, const void *state, int term,
+                               const struct units *units, char line[SCENE_MANY_BODY_REMARK_SIZE]) {
+    const struct many_body_term *of = &many_body->law->term[term];
+    const struct density_energy *energy = &of->energy;
+    double found[2];
+    if (!mf_many_body_was_beyond(many_body->law, state, term, found))
+        return false;
+    const char *const unit = density_unit(&many_body->weight[term], units->dimensions);
+    const double factor = mf_units_factor(units, unit);
+    const bool never = found[1] < energy->low || found[0] > energy->high;
+    char name[UNITS_NAME_SIZE];
+    snprintf(line, SCENE_MANY_BODY_REMARK_SIZE,
+             "many_body.%s.energy: densities were %.4g to %.4g%s, %s the table from %.4g to %.4g: "
+             "the energy was continued as a straight line there",
+             of->name, factor * found[0], factor * found[1], mf_units_suffix(units, unit, name),
+             never ? "never in" : "and so beyond", factor * energy->low, factor * energy->high);
+    return true;
+}
+
 static enum status read_term(struct scene_many_body *many_body, struct json_object *object,
                              const char *name, const struct simulation_setup *setup) {
     struct many_body *law = many_body->law;
@@ -164,6 +183,9 @@ static enum status read_term(struct scene_many_body *many_body, struct json_obje
     TRY(read_energy(&many_body->energy[t], &term->energy, &own, dimensions,
                     density_unit(&many_body->weight[t], dimensions)));
     mf_json_finish(&own);
+    if (mf_json_fault_count(own.document) == faults &&
+        mf_density_energy_check_weight(&many_body->energy[t], &many_body->weight[t]) != STATUS_OK)
+        mf_json_fault(&own, "energy", "%s", mf_status_message());
     return STATUS_OK;
 }
 

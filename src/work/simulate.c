@@ -12,6 +12,8 @@
 #include "work/simulate_changes.h"
 #include "work/simulate_observables.h"
 
+#include <string.h>
+
 /// Seconds between checkpoints of a long simulation, at least.
 static const double checkpoint_interval = 60;
 
@@ -190,6 +192,41 @@ static void write_numbers(const struct simulation *simulation, struct json_write
         mf_json_write_number(writer, number[k].name, number[k].value);
 }
 
+struct remark {
+    char line[SCENE_MANY_BODY_REMARK_SIZE];
+};
+
+/// Where local densities went beyond what their energies are tabulated for. Returns how many lines.
+static int find_remarks(const struct run *run, struct remark remark[MANY_BODY_MAX_TERMS]) {
+    const struct scene_many_body *many_body = &run->scene.many_body;
+    const struct simulation *simulation = &run->simulation;
+    int count = 0;
+    for (int k = 0; k < simulation->interactions; k++) {
+        const struct interaction_use *use = &simulation->interaction[k];
+        for (int t = 0; use->choice.kind == &mf_many_body && t < many_body->law->terms; t++)
+            count += mf_scene_many_body_remark(many_body, use->state, t, &run->scene.units,
+                                               remark[count].line);
+    }
+    return count;
+}
+
+static void print_remarks(struct run *run) {
+    struct remark remark[MANY_BODY_MAX_TERMS];
+    const int count = find_remarks(run, remark);
+    for (int k = 0; k < count; k++)
+        mf_progress_print(&run->progress, "mesofit: warning: %s", remark[k].line);
+}
+
+static void write_remarks(const struct run *run, struct json_writer *writer) {
+    struct remark remark[MANY_BODY_MAX_TERMS];
+    char text[MANY_BODY_MAX_TERMS * sizeof *remark] = "";
+    const int count = find_remarks(run, remark);
+    for (int k = 0; k < count; k++)
+        strcat(strcat(text, k > 0 ? "; " : ""), remark[k].line);
+    if (count > 0)
+        mf_json_write_text(writer, "many_body_warning", text);
+}
+
 static enum status write_summary(const struct run *run, double taken) {
     const struct observable_results results = results_of(run);
     struct json_writer *writer = mf_json_writer_create();
@@ -202,6 +239,7 @@ static enum status write_summary(const struct run *run, double taken) {
     mf_simulate_changes_write(&run->kept.changes, writer);
     mf_json_write_number(writer, "steps_per_second", (double)run->simulation.step / taken);
     write_numbers(&run->simulation, writer);
+    write_remarks(run, writer);
     mf_simulate_observables_write_summary(&run->observables, &results, writer);
     mf_json_write_number(writer, "seed", (double)run->heading.seed);
     mf_json_write_text(writer, "version", MESOFIT_VERSION);
@@ -280,19 +318,6 @@ static void remove_checkpoint(const struct run *run) {
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     mf_tracked_files_remove(path);
-}
-
-/// Where local densities went beyond what their energies are tabulated for.
-static void print_remarks(struct run *run) {
-    const struct simulation *simulation = &run->simulation;
-    for (int k = 0; k < simulation->interactions; k++) {
-        const struct interaction_use *use = &simulation->interaction[k];
-        const struct many_body *many_body = use->choice.parameters;
-        char line[MANY_BODY_REMARK_SIZE];
-        for (int t = 0; use->choice.kind == &mf_many_body && t < many_body->terms; t++)
-            if (mf_many_body_remark(many_body, use->state, t, line))
-                mf_progress_print(&run->progress, "mesofit: warning: %s", line);
-    }
 }
 
 static enum status write_results(struct run *run) {

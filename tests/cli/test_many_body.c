@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static struct run_program_result result;
 
@@ -47,6 +48,9 @@ static void test_a_scene_is_read_and_written_back(void **state) {
     assert_contains(result.err, "mesofit: warning: many_body.shell.energy: densities were ");
     assert_contains(result.err, "and so beyond the table from 0 to 8: the energy was continued");
     assert_null(strstr(result.err, "many_body.crowd"));
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, "\"many_body_warning\":\t\"many_body.shell.energy: densities were ");
+    free(summary);
     RUN_PROGRAM(&result, "simulate", "out/used.json", "-o", "again");
     run_program_assert_code(&result, 0);
     results_assert_same("out", "again", tables);
@@ -101,6 +105,35 @@ static void test_units_of_a_file_are_those_of_its_densities(void **state) {
     assert_close_relative(energy_in(*state, "angstrom-fs", 10, 1 / 4.184), here, 1e-6);
 }
 
+/// Of two beads 0.2 nm apart, with λ = 0.5 nm: Lucy's weight, 105/(16π r_c³) (1 + 3x)(1 − x)³ with
+/// x = r/r_c, r_c = 0.4 nm, is 10.2 per nm³ for each, beyond a table from 0 to 3 per nm³.
+static void test_densities_beyond_a_table_are_told_in_the_units_of_the_file(void **state) {
+    static const char pair[] =
+        "{\"units\": {\"system\": \"nm-ps\", \"length\": 0.5, \"temperature\": 300, \"mass\": "
+        "20},\n"
+        "\"box\": [3, 3, 3], \"time_step\": 1e-9, \"temperature\": 300, \"rdf\": {\"range\": 1},\n"
+        "\"particles\": {\"count\": 2, \"placement\": \"file\", \"file\": \"start.tsv\", \"mass\": "
+        "20},\n"
+        "\"many_body\": {\"pair\": {\"weight\": {\"law\": \"lucy\", \"cutoff\": 0.4},\n"
+        "  \"energy\": {\"law\": \"expression\", \"formula\": \"rho\", \"maximum\": 3}}},\n"
+        "\"dynamics\": {\"integrator\": \"velocity-verlet\"},\n"
+        "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 1}}\n";
+    static const char words[] =
+        "many_body.pair.energy: densities were 10.2 to 10.2 1/nm^3, never in "
+        "the table from 0 to 3: ";
+    temporary_folder_write(*state, "start.tsv", "1 1 1\n1 1 1.2\n", 14);
+    small_inputs_write(*state, "scene.json", pair, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, words);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, words));
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_contains(summary, words);
+    free(summary);
+}
+
 /// Of a dimer 0.5 long with f = −2ρ, excluded or not: 0, or −2 w(0.5) for each bead.
 static void test_excluded_pairs_do_not_count(void **state) {
     static const char dimer[] =
@@ -152,6 +185,12 @@ static void test_what_cannot_be_is_refused_in_one_line(void **state) {
          {"many_body.shell.energy: the minimum 0 is not below the maximum -1", NULL}},
         {"rho^2/10", "1/(rho - 1)", {"many_body.shell.energy: the formula", "near rho = "}},
         {"rho^2/10", "r^2", {"unknown name: only rho and exp(...) are allowed", NULL}},
+        {"\"b\": 25, \"cutoff\": 0.75",
+         "\"b\": 25, \"cutoff\": 0.8",
+         {"many_body.crowd.energy: the cutoff 0.8 is not that of the weight, 0.75", NULL}},
+        {"\"weight\": {\"law\": \"many-body-dpd\"",
+         "\"weight\": {\"law\": \"lucy\"",
+         {"many_body.crowd.energy: the law \"many-body-dpd\" needs the weight", "not \"lucy\""}},
         {"f.tsv", "g.tsv", {"many_body.file.energy.file", "g.tsv"}},
         {"\"cutoff\": 1.2", "\"cutoff\": 1.7", {"twice the cutoff 1.7", NULL}},
         {"\"dissipative\": {\"law\": \"power\", \"sigma\": 2}",
@@ -187,6 +226,7 @@ int main(void) {
         CASE(test_a_scene_is_read_and_written_back),
         CASE(test_other_tables_have_other_energies),
         CASE(test_units_of_a_file_are_those_of_its_densities),
+        CASE(test_densities_beyond_a_table_are_told_in_the_units_of_the_file),
         CASE(test_excluded_pairs_do_not_count),
         CASE(test_what_cannot_be_is_refused_in_one_line),
         CASE(test_other_engines_refuse_it),

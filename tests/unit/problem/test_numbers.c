@@ -229,6 +229,34 @@ static void test_numbers_apply_changes_laws_of_local_densities(void **state) {
     mf_many_body_clear(&law);
 }
 
+/// Warren's energy is his with the cutoff of the weight alone: a number that is one of the two
+/// cannot be another.
+static void test_numbers_apply_refuses_a_cutoff_that_the_energy_has_not(void **state) {
+    (void)state;
+    struct inverse_problem changed = {0};
+    struct numbers_own own = {0};
+    struct weight_parameters of_weight = {0, 0.75, 3};
+    double of_energy[16] = {25, 0.75};
+    const struct curve weight = {&mf_weight_many_body_dpd, &of_weight};
+    const struct curve energy = {&mf_density_energy_many_body_dpd, of_energy};
+    static struct many_body law;
+    many_bodies_add(&law, "crowd", 1, 1, &weight, &energy);
+    assert_true(mf_density_energy_many_body_dpd.size <= sizeof of_energy);
+    const struct inverse_problem problem = {
+        .numbers = 1,
+        .number = {{.place = INVERSE_OF_WEIGHT,
+                    .offset = offsetof(struct weight_parameters, cutoff)}},
+        .weight = {1, &weight},
+        .density_energy = {1, &energy},
+        .scene = {.interaction = {{&mf_many_body, &law}}, .interactions = 1}};
+    assert_fails(mf_numbers_apply(&problem, (const double[]){0.8}, &changed, &own),
+                 STATUS_BAD_INPUT, "the cutoff 0.75 is not that of the weight, 0.8");
+    mf_numbers_own_clear(&own);
+    assert_ok(mf_numbers_apply(&problem, (const double[]){0.75}, &changed, &own));
+    mf_numbers_own_clear(&own);
+    mf_many_body_clear(&law);
+}
+
 static void test_numbers_are_variables_from_minimum_to_maximum_with_errors(void **state) {
     (void)state;
     struct mixture mixture;
@@ -318,6 +346,7 @@ int main(void) {
         cmocka_unit_test(test_numbers_apply_copies_the_parameters_of_an_interaction),
         cmocka_unit_test(test_numbers_apply_changes_laws_of_bonds_and_angles),
         cmocka_unit_test(test_numbers_apply_changes_laws_of_local_densities),
+        cmocka_unit_test(test_numbers_apply_refuses_a_cutoff_that_the_energy_has_not),
         cmocka_unit_test(test_numbers_are_variables_from_minimum_to_maximum_with_errors),
         cmocka_unit_test(test_numbers_stand_behind_the_curves_and_change_none),
         cmocka_unit_test(test_numbers_bound_is_the_end_that_a_value_has_come_to),
