@@ -28,7 +28,7 @@
 
 #include <math.h>
 
-enum { MAX_BLOCKS = 40 };
+enum { MAX_BLOCKS = SLAB_MAX_BLOCKS };
 
 /// Columns of the series: γ and P_N of each sample.
 enum { TENSION, NORMAL, SERIES };
@@ -170,7 +170,7 @@ static const char *const names[] = {"liquid_density", "vapour_density", "interfa
 
 struct found {
     struct slab_fit fit;
-    bool is_slab;
+    bool has_step, is_slab;
     double value[NUMBERS], error[NUMBERS]; ///< NaN: not known
 };
 
@@ -203,7 +203,13 @@ static enum status find(const struct state *s, struct found *found) {
         density[k] = mean_without(s, k, -1);
     const double length = s->box.length[s->axis];
     found->fit = mf_slab_fit(density, s->bins, length, NULL);
-    found->is_slab = mf_slab_fit_is_slab(&found->fit, length, mf_box_volume(&s->box), s->count);
+    const double volume = mf_box_volume(&s->box);
+    found->has_step = mf_slab_fit_is_slab(&found->fit, length, volume, s->count);
+    found->is_slab =
+        found->has_step &&
+        mf_slab_fit_rises_once(&found->fit,
+                               &(struct slab_blocks){s->sums, s->blocks.samples, blocks, s->row},
+                               s->bins, length, volume);
     numbers_of(&found->fit, found->value);
     for (size_t b = 0; b < blocks && blocks > 1; b++) {
         double without[NUMBERS];
@@ -233,6 +239,12 @@ static enum status tell_none(const struct state *s, const struct found *found) {
                               "an interface between them; a slab may begin by \"slab\" of "
                               "\"particles\", in a box that is longer, or at a lower temperature",
                               axis);
+    if (found->has_step)
+        return mf_status_fail(
+            STATUS_UNSTABLE,
+            "no interface found: more than one slab, or a hole: the density along "
+            "%s rises more than once; begin by \"slab\" of \"particles\"",
+            axis);
     return mf_status_fail(STATUS_UNSTABLE,
                           "no interface found: the densities along %s differ by no more than "
                           "chance allows; a slab may begin by \"slab\" of \"particles\", at a "

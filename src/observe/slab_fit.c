@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/slab_fit.h"
 
+#include "base/statistics.h"
+
 #include <math.h>
 
 /// How far the plateaus stay from the middle of an interface, in w.
 static const double reach = 3;
+
+/// What chance does not do.
+static const double deviations = 5;
 
 struct profile {
     const double *density;
@@ -107,10 +112,49 @@ struct slab_fit mf_slab_fit(const double *density, size_t bins, double length,
 
 bool mf_slab_fit_is_slab(const struct slab_fit *fit, double length, double volume, double count) {
     enum { LEAST = 2 };
-    static const double deviations = 5;
     if (fit->liquid_bins < LEAST || fit->vapour_bins < LEAST)
         return false;
     const double within = volume * 2 * fit->place / length;
     const double variance = count / volume * (1 / within + 1 / (volume - within));
     return fit->liquid - fit->vapour > deviations * sqrt(variance);
+}
+
+/// By how many standard deviations the density of some bins is above the half of the step.
+/// @param[in] volume  of the window
+static double above_half(const struct slab_fit *fit, const struct slab_blocks *blocks, size_t first,
+                         size_t window, double volume) {
+    const double half = 0.5 * (fit->liquid + fit->vapour), count = (double)blocks->count;
+    double means[SLAB_MAX_BLOCKS], mean = 0;
+    for (size_t b = 0; b < blocks->count; b++) {
+        means[b] = 0;
+        for (size_t k = first; k < first + window; k++)
+            means[b] += blocks->sums[b * blocks->row + k] / blocks->samples[b] / (double)window;
+        mean += means[b] / count;
+    }
+    const double error =
+        blocks->count > 1 ? mf_statistics_correlated_error(means, blocks->count, 1) : 0;
+    return (mean - half) / sqrt(error * error + half / (volume * count));
+}
+
+/// Whether no window of one size is above the half again once others have been above and below.
+static bool rises_once(const struct slab_fit *fit, const struct slab_blocks *blocks, size_t bins,
+                       size_t window, double volume) {
+    bool rose = false, fell = false;
+    for (size_t first = 0; first + window <= bins; first += (window + 1) / 2) {
+        const double above = above_half(fit, blocks, first, window, volume);
+        if (fell && above > deviations)
+            return false;
+        rose = rose || above > deviations;
+        fell = fell || (rose && above < -deviations);
+    }
+    return true;
+}
+
+bool mf_slab_fit_rises_once(const struct slab_fit *fit, const struct slab_blocks *blocks,
+                            size_t bins, double length, double volume) {
+    const double narrow = fit->scale / length * (double)bins;
+    for (size_t window = narrow < 1 ? 1 : (size_t)narrow; 4 * window <= bins; window *= 2)
+        if (!rises_once(fit, blocks, bins, window, volume * (double)window / (double)bins))
+            return false;
+    return true;
 }

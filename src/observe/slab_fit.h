@@ -36,3 +36,19 @@ double mf_slab_fit_value(const struct slab_fit *fit, double z);
 /// @param[in] volume  of the box [λ^d]
 /// Tested: test_slab_fit.
 bool mf_slab_fit_is_slab(const struct slab_fit *fit, double length, double volume, double count);
+
+/// A profile block by block, for its scatter.
+struct slab_blocks {
+    const double *sums;    ///< shape [count, row], the bins first: densities, over the samples
+    const double *samples; ///< shape [count]
+    size_t count, row;     ///< at most SLAB_MAX_BLOCKS
+};
+enum { SLAB_MAX_BLOCKS = 40 };
+
+/// Whether the density, along the axis, rises through the half of the step and falls through it,
+/// and does not rise again, as it does with two slabs, or one with a hole in it. It is above or
+/// below the half where the mean over a window, w wide or 2, 4, … times that, is so by more than
+/// five standard deviations: by the scatter of the blocks, and of particles at random in a
+/// configuration of each. Tested: test_slab_fit.
+bool mf_slab_fit_rises_once(const struct slab_fit *fit, const struct slab_blocks *blocks,
+                            size_t bins, double length, double volume);

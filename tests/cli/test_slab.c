@@ -10,6 +10,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,6 +70,26 @@ static void test_box_without_an_interface_is_told(void **state) {
     free(summary);
 }
 
+/// Two of 150 beads, with 3.6 between them on the one side and 8.4 on the other.
+static void test_two_slabs_are_told(void **state) {
+    FILE *file = fopen(temporary_folder_file(*state, "places.tsv"), "w");
+    assert_non_null(file);
+    for (int k = 0; k < 300; k++) {
+        const int layer = k / 25;
+        fprintf(file, "%g %g %g\n", 1.2 * (k % 5), 1.2 * (k / 5 % 5),
+                3 + 1.2 * layer + (layer < 6 ? 0 : 2.4));
+    }
+    fclose(file);
+    small_inputs_write(*state, "scene.json", scene, "\"slab\": 0.5",
+                       "\"placement\": \"file\", \"file\": \"places.tsv\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--quiet", "--force", "-o", "out");
+    run_program_assert_code(&result, 0);
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_non_null(strstr(summary, "no interface found: more than one slab, or a hole"));
+    assert_null(strstr(summary, "surface_tension"));
+    free(summary);
+}
+
 static void refuse(struct temporary_folder *folder, const char *from, const char *to,
                    const char *what) {
     small_inputs_write(folder, "scene.json", scene, from, to);
@@ -91,8 +112,8 @@ static void test_slab_is_refused_where_it_makes_no_sense(void **state) {
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {TEST(test_slab_is_written_and_resumed),
-                                       TEST(test_box_without_an_interface_is_told),
-                                       TEST(test_slab_is_refused_where_it_makes_no_sense)};
+    const struct CMUnitTest tests[] = {
+        TEST(test_slab_is_written_and_resumed), TEST(test_box_without_an_interface_is_told),
+        TEST(test_two_slabs_are_told), TEST(test_slab_is_refused_where_it_makes_no_sense)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,11 +69,70 @@ static void test_noise_is_no_slab(void **state) {
     }
 }
 
+/// A density for each bead in a layer, smooth at its ends.
+static double layer(double z, double from, double to) {
+    return 0.5 * (tanh((z - from) / 0.6) - tanh((z - to) / 0.6));
+}
+
+enum { BLOCKS = 20 };
+
+/// Whether the blocks of a profile, each of beads at random by it, show a slab.
+/// @param[in] count  of blocks, one configuration each
+static bool is_slab(const double *density, size_t count, uint32_t trial) {
+    enum { LARGEST = 100 };
+    double sums[BLOCKS][BINS] = {{0}}, mean[BINS] = {0}, ones[BLOCKS];
+    struct rng_sequence sequence = mf_rng_sequence_begin(3, RNG_PLACEMENT, trial, 1);
+    for (size_t b = 0; b < count; b++) {
+        ones[b] = 1;
+        for (size_t k = 0; k < BINS; k++) {
+            const double volume = area * length / BINS;
+            for (int n = 0; n < LARGEST; n++)
+                sums[b][k] += mf_rng_sequence_uniform(&sequence) < density[k] * volume / LARGEST
+                                  ? 1 / volume
+                                  : 0;
+            mean[k] += sums[b][k] / (double)count;
+        }
+    }
+    const struct slab_fit fit = mf_slab_fit(mean, BINS, length, NULL);
+    const struct slab_blocks blocks = {sums[0], ones, count, BINS};
+    return mf_slab_fit_is_slab(&fit, length, area * length, 1000) &&
+           mf_slab_fit_rises_once(&fit, &blocks, BINS, length, area * length);
+}
+
+/// One slab is one, of a cold liquid and of one near its critical point, in one configuration and
+/// in many; two, beside each other or half a box apart, are not, nor is one with a cavity in its
+/// middle or beside it.
+static void test_two_slabs_and_one_with_a_hole_are_none(void **state) {
+    (void)state;
+    enum { TRIALS = 10 };
+    double one[BINS], near_critical[BINS], two[BINS], apart[BINS], hole[BINS], aside[BINS];
+    for (size_t k = 0; k < BINS; k++) {
+        const double z = place(k);
+        one[k] = 0.002 + 0.72 * layer(z, -8, 8);
+        near_critical[k] = 0.2 + 0.2 * layer(z, -8, 8);
+        two[k] = 0.008 + 0.71 * (layer(z, -12, -5) + layer(z, 5, 12));
+        apart[k] = 0.008 + 0.71 * (layer(z, -6, 6) + layer(z, 16, 40) + layer(z, -40, -16));
+        hole[k] = 0.002 + 0.72 * (layer(z, -10, -2) + layer(z, 2, 10));
+        aside[k] = 0.002 + 0.72 * (layer(z, -10, 3) + layer(z, 6, 10));
+    }
+    for (uint32_t trial = 0; trial < TRIALS; trial++) {
+        for (size_t count = 1; count <= BLOCKS; count += BLOCKS - 1) {
+            assert_true(is_slab(one, count, trial));
+            assert_true(is_slab(near_critical, count, trial));
+        }
+        assert_false(is_slab(two, BLOCKS, trial));
+        assert_false(is_slab(apart, BLOCKS, trial));
+        assert_false(is_slab(hole, BLOCKS, trial));
+        assert_false(is_slab(aside, BLOCKS, trial));
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_slab_has_its_densities_and_width_when_its_interface_is_no_tanh),
         cmocka_unit_test(test_wave_is_no_slab),
         cmocka_unit_test(test_noise_is_no_slab),
+        cmocka_unit_test(test_two_slabs_and_one_with_a_hole_are_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
