@@ -320,9 +320,8 @@ static void advise(const struct export_job *job, const char *prefix, FILE *strea
         [EXPORT_NO_PROGRAM] = "no lmp was found here; Debian's lacks it"};
     if (mf_export_is_power(job))
         fprintf(stream,
-                "%spackage    -var friction dpd runs that of the result, misfit %.2g: %s of "
-                "LAMMPS's package "
-                "DPD-BASIC; %s\n",
+                "%spackage    -var friction dpd runs that of the result, misfit %.2g: %s, of "
+                "LAMMPS's package DPD-BASIC; %s\n",
                 prefix, job->worst_misfit, mf_export_dynamics_friction(job), here[job->here]);
     if (job->runs != EXPORT_OWN_FRICTION)
         fprintf(stream,

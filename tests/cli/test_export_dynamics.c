@@ -140,7 +140,7 @@ static void test_what_the_lammps_here_lacks_is_told(void **state) {
     write_lammps(*state, "buck dpd/ext/tstat/gpu dpd/tstat soft");
     said = export_to("lammps", NULL);
     assert_contains(said,
-                    "dpd/ext/tstat of LAMMPS's package DPD-BASIC; the lmp of this machine lacks");
+                    "dpd/ext/tstat, of LAMMPS's package DPD-BASIC; the lmp of this machine lacks");
     assert_contains(said, "NOT that of the result");
     char *text = temporary_folder_read("lammps/in.mesofit");
     assert_contains(text, "variable friction index langevin ");

@@ -202,8 +202,9 @@ static void test_inversion_is_refused_when_the_scene_has_interactions(void **sta
                        "\"interactions\": {\"uniform-force\": {\"force\": [1, 0, 0]}}, \"box\"");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err,
-                    "run.json: scene.interactions: \"imc\" samples only pairs and molecules");
+    assert_contains(
+        result.err,
+        "run.json: scene.interactions: \"imc\" samples only pairs, molecules and \"many_body\"");
 }
 
 static void test_vacf_is_refused_when_there_are_no_velocities(void **state) {

@@ -51,6 +51,7 @@ static void test_slab_has_the_densities_and_tension_of_the_literature(void **sta
     double value[TARGETS] = {0}, error[TARGETS] = {0};
     fluid_lennard_jones(&fluid, 600, 0.005);
     fluid.setup.box = (struct box){3, {7.5, 7.5, 30}};
+    fluid.setup.placement.kind = PLACEMENT_RANDOM; // the planes of a lattice would be slabs
     fluid.setup.placement.slab = 0.47;
     fluid.setup.temperature = temperature;
     measure(&fluid.setup, &plan, value, error);
@@ -94,6 +95,7 @@ static void find_shifted(double shift, double value[TARGETS]) {
     void *const state = mf_memory_zeroed(1, mf_slab.state_size);
     fluid_lennard_jones(&fluid, 600, 0.005);
     fluid.setup.box = (struct box){3, {7.5, 7.5, 30}};
+    fluid.setup.placement.kind = PLACEMENT_RANDOM; // the planes of a lattice would be slabs
     fluid.setup.placement.slab = 0.47;
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
     assert_ok(mf_slab.begin(state, &settings, &simulation, &plan));
