@@ -17,7 +17,9 @@ class Damping(unittest.TestCase):
         self.folder = self.place.name
         make_folder(self.folder)
         self.served = None
-        self.write("run.json", {**water_fit(4), "verification": {"replicas": 2, "equilibration": 50, "samples": 5, "every": 10}})
+        fit = water_fit(4)
+        fit["method"]["samples"] = 100 # few would be noise, by which a fit damps its steps itself
+        self.write("run.json", {**fit, "verification": {"replicas": 2, "equilibration": 50, "samples": 5, "every": 10}})
 
     def tearDown(self):
         if self.served:
@@ -82,7 +84,7 @@ class Damping(unittest.TestCase):
         for slow, plain in pairs:
             self.assertEqual(slow[:at + 2], plain[:at + 2])
             whole = plain[at + 2] - plain[at + 1]
-            if abs(whole) > 1e-2:
+            if abs(whole) > 1e-2 and plain[at + 1] < 3: # the core is hardly known
                 parts.append((slow[at + 2] - slow[at + 1]) / whole)
         self.assertGreater(len(parts), 20)
         # Bins that the target hardly knows are cut one by one.
