@@ -17,9 +17,7 @@ static double cutoff_of(const void *parameters) {
 
 static double sanyal_shell_value(const void *parameters, double r) {
     const struct weight_parameters *p = parameters;
-    const double inner = p->inner_cutoff * p->inner_cutoff, outer = p->cutoff * p->cutoff;
-    const double x = fmin(1, fmax(0, (r * r - inner) / (outer - inner)));
-    return 1 - x * x * (3 - 2 * x);
+    return weight_sanyal_shell(r * r, p->inner_cutoff * p->inner_cutoff, p->cutoff * p->cutoff);
 }
 
 static double lucy_value(const void *parameters, double r) {

@@ -8,6 +8,14 @@
 
 #include "curves/table.h"
 
+#include <math.h>
+
+/// Sanyal and Shell's weight of a squared distance, with the squares of r_0 and r_c.
+static inline double weight_sanyal_shell(double squared, double inner, double outer) {
+    const double x = fmin(1, fmax(0, (squared - inner) / (outer - inner)));
+    return 1 - x * x * (3 - 2 * x);
+}
+
 /// w = 1 for r < r_0, 1 − 3x² + 2x³ with x = (r² − r_0²)/(r_c² − r_0²) from there to r_c: the
 /// polynomial c_0 + c_2 r² + c_4 r⁴ + c_6 r⁶ whose value and slope go on smoothly at both ends.
 /// T. Sanyal and M. S. Shell, J. Chem. Phys. 145, 034109 (2016), eq. 6.

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file How dense it is around each particle: the distribution p(ρ) of
 ///
-///   ρ_i = Σ_{j≠i} w(r_ij),   w = 1 for r < r_0, 1 − 3x² + 2x³ with x = (r² − r_0²)/(r_c² − r_0²)
-///   up to r_c, 0 beyond
+///   ρ_i = Σ_{j≠i} w(r_ij),
 ///
-/// (T. Sanyal and M. S. Shell, J. Chem. Phys. 145, 034109 (2016)), a number of neighbours, on which
-/// the energy of many-body potentials depends. It is of all pairs that interact: those that
-/// molecules exclude are left out. Of an ideal gas the mean is ρ ∫w dV and the variance ρ ∫w² dV.
+/// with w by Sanyal and Shell (curves/weight.h), a number of neighbours, on which the energy of
+/// many-body potentials depends. It is of all pairs that interact: those that molecules exclude are
+/// left out. Of an ideal gas the mean is ρ ∫w dV and the variance ρ ∫w² dV.
 #pragma once
 
+#include "curves/weight.h"
 #include "observe/observable.h"
 #include "observe/sample_blocks.h"
 #include "observe/sample_series.h"
@@ -25,10 +25,8 @@ extern const struct observable mf_weighted_density;
 /// w of a squared distance.
 static inline double weighted_density_weight(const struct weighted_density_settings *settings,
                                              double squared) {
-    const double inner = settings->inner_cutoff * settings->inner_cutoff;
-    const double outer = settings->cutoff * settings->cutoff;
-    const double x = fmin(1, fmax(0, (squared - inner) / (outer - inner)));
-    return 1 - x * x * (3 - 2 * x);
+    return weight_sanyal_shell(squared, settings->inner_cutoff * settings->inner_cutoff,
+                               settings->cutoff * settings->cutoff);
 }
 
 /// What is counted of many configurations. All zero is none.
