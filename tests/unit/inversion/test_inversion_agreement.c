@@ -193,6 +193,24 @@ static void test_noise_is_that_of_each_pair_type(void **state) {
     gsl_rng_free(rng);
 }
 
+/// Variances of the target of 9 and 1 are 5 in the mean: the bins of 9 bear 9/5 of what is asked
+/// of the others, which bear no more than that.
+static void test_noise_of_samples_counts_by_that_of_the_target(void **state) {
+    (void)state;
+    static struct made made;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 100, 0);
+    for (size_t k = 0; k < BINS; k++) {
+        made.unit[k] = 1;
+        made.mean[k] = made.target[k] = 100;
+        made.error[k] = k < BINS / 2 ? 3 : 1;
+        made.comoment[k * (BINS + 1)] = SAMPLES * (k < BINS / 2 ? 1.8 : 1);
+    }
+    mf_inversion_assess(&made.state);
+    assert_true(fabs(made.state.assessment.section[0].own_noise - 1 / sqrt(SAMPLES)) < 1e-9);
+    gsl_rng_free(rng);
+}
+
 /// 3 % more of all pairs are 3 standard errors in the mean of the bins, unless the target's factor
 /// may be off by as much; then the factor is found by what it makes, and by nothing else.
 static void test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be(void **state) {
@@ -271,6 +289,7 @@ int main(void) {
         cmocka_unit_test(test_target_that_is_off_as_a_whole_agrees_where_its_factor_may_be),
         cmocka_unit_test(test_bound_of_agreement_is_that_of_the_bins_not_of_few_samples),
         cmocka_unit_test(test_error_of_a_factor_is_no_noise_of_bins),
+        cmocka_unit_test(test_noise_of_samples_counts_by_that_of_the_target),
         cmocka_unit_test(test_noise_is_that_of_each_pair_type),
         cmocka_unit_test(test_noise_of_a_bin_is_that_of_the_counts_that_are_expected),
     };

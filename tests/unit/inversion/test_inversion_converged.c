@@ -44,6 +44,10 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.drifts.pressure[0].drift = 0.4;
     assert_true(mf_inversion_has_converged(inversion, true));
+    assert_true(inversion->course.has_walked); // since it agreed for the first time
+    inversion = make_end(&end, 0);
+    assert_true(mf_inversion_has_converged(inversion, true));
+    assert_false(inversion->course.has_walked);
 }
 
 /// A way that is over once may be so by chance; what goes on goes on in one direction.
