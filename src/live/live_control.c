@@ -25,16 +25,12 @@ static void leave(struct live_control *control) {
     pthread_mutex_unlock(&control->lock);
 }
 
-enum status mf_live_control_order(struct live_control *control, struct live_order *order) {
+void mf_live_control_order(struct live_control *control, struct live_order *order) {
     pthread_mutex_lock(&control->lock);
-    const bool busy = control->ordered;
-    if (!busy) {
-        control->order = *order;
-        control->ordered = true;
-        order->text = NULL;
-    }
+    control->order = *order;
+    control->ordered = control->going = true;
+    order->text = NULL;
     leave(control);
-    return busy ? mf_status_fail(STATUS_BAD_INPUT, "a run is about to begin") : STATUS_OK;
 }
 
 void mf_live_control_pause(struct live_control *control, bool paused) {
@@ -53,9 +49,11 @@ void mf_live_control_step(struct live_control *control, int64_t steps) {
 
 void mf_live_control_stop(struct live_control *control) {
     pthread_mutex_lock(&control->lock);
-    control->stopped = true;
-    control->paused = false;
-    mf_interrupt_request(true);
+    if (control->going) {
+        control->stopped = true;
+        control->paused = false;
+        mf_interrupt_request(true);
+    }
     leave(control);
 }
 
@@ -93,7 +91,7 @@ bool mf_live_control_take(struct live_control *control, struct live_order *order
 
 void mf_live_control_reset(struct live_control *control) {
     pthread_mutex_lock(&control->lock);
-    control->paused = control->stopped = control->changes = false;
+    control->going = control->paused = control->stopped = control->changes = false;
     control->steps = 0;
     mf_interrupt_request(false);
     pthread_mutex_unlock(&control->lock);

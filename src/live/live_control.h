@@ -30,8 +30,9 @@ struct live_change {
 struct live_control {
     pthread_mutex_t lock; ///< of all that follows
     pthread_cond_t changed;
-    bool ordered;
+    bool ordered; ///< there is an order that was not taken
     struct live_order order;
+    bool going; ///< a run was ordered, and has not ended
     bool paused, stopped;
     int64_t steps; ///< that may pass though it is paused
     double speed;  ///< steps a second at most; 0: any
@@ -43,8 +44,8 @@ enum status mf_live_control_init(struct live_control *control) MUST_USE;
 void mf_live_control_clear(struct live_control *control);
 
 /// @name For threads of the server
-/// Put an order, whose text is given away. BAD_INPUT if there is one that was not yet taken.
-enum status mf_live_control_order(struct live_control *control, struct live_order *order) MUST_USE;
+/// Put an order, whose text is given away; none may be waiting.
+void mf_live_control_order(struct live_control *control, struct live_order *order);
 void mf_live_control_pause(struct live_control *control, bool paused);
 void mf_live_control_step(struct live_control *control, int64_t steps);
 void mf_live_control_stop(struct live_control *control);
@@ -55,7 +56,7 @@ void mf_live_control_change(struct live_control *control, const struct live_chan
 /// Wait for an order, a tenth of a second at most; false if there is none.
 bool mf_live_control_take(struct live_control *control, struct live_order *order);
 
-/// Forget wishes of an earlier run, also that to stop.
+/// A run has ended: forget what was wished of it, also that to stop.
 void mf_live_control_reset(struct live_control *control);
 
 /// Whether the last run was stopped from the page.

@@ -160,7 +160,7 @@ static enum status start(struct live_view *view, const struct live_request *requ
         free(order.text);
         return mf_status_fail(STATUS_BAD_INPUT, "choose a scene or a run file first");
     }
-    const enum status status = mf_live_control_order(&view->control, &order);
+    const enum status status = mf_live_view_order(view, &order);
     free(order.text);
     TRY(status);
     return give_state(view, request, answer);

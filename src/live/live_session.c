@@ -49,19 +49,20 @@ static enum status run(struct session *session, const struct live_order *order) 
     return status;
 }
 
-/// Run an order, and tell the page how it ended.
-static enum status carry_out(struct session *session, struct live_order *order) {
+/// Run an order, and tell the page how it ended; from then on another one may come.
+/// @param[out] stopped  from the page
+static enum status carry_out(struct session *session, struct live_order *order, bool *stopped) {
     struct live_view *view = &session->view;
-    mf_live_control_reset(&view->control);
-    mf_live_view_set_phase(view, LIVE_RUNNING, NULL);
     const enum status status = run(session, order);
     free(order->text);
-    const bool stopped = status == STATUS_INTERRUPTED && mf_live_control_stopped(&view->control);
+    *stopped = status == STATUS_INTERRUPTED && mf_live_control_stopped(&view->control);
     const bool ran = session->watch.run.folder != NULL;
     const char *message = status == STATUS_OK ? "" : mf_status_message();
     mf_live_watch_end(&session->watch);
     mf_live_view_write_tables(view);
-    mf_live_view_set_phase(view, stopped ? LIVE_STOPPED : ran ? LIVE_ENDED : LIVE_REFUSED, message);
+    mf_live_control_reset(&view->control);
+    mf_live_view_set_phase(view, *stopped ? LIVE_STOPPED : ran ? LIVE_ENDED : LIVE_REFUSED,
+                           message);
     return status;
 }
 
@@ -81,12 +82,14 @@ static void report_end(enum status status) {
 static enum status serve(struct session *session) {
     struct live_control *control = &session->view.control;
     struct live_order order;
-    while (!mf_interrupt_requested()) {
-        if (!mf_live_control_take(control, &order))
+    for (;;) {
+        if (!mf_live_control_take(control, &order)) {
+            if (mf_interrupt_requested())
+                return STATUS_OK;
             continue;
-        const enum status status = carry_out(session, &order);
-        const bool stopped = status == STATUS_INTERRUPTED && mf_live_control_stopped(control);
-        mf_live_control_reset(control);
+        }
+        bool stopped;
+        const enum status status = carry_out(session, &order, &stopped);
         if (mf_interrupt_requested())
             return status;
         const bool refused = status == STATUS_BAD_INPUT || status == STATUS_IO;
@@ -97,7 +100,6 @@ static enum status serve(struct session *session) {
         wait_for_pages(session, last_visit_wait);
         return status;
     }
-    return STATUS_OK;
 }
 
 /// What the command line names is shown, and perhaps begun.
@@ -116,7 +118,7 @@ static enum status show_subject(struct session *session) {
         return STATUS_OK;
     snprintf(order.file, sizeof order.file, "%s", options->subject);
     order.text = mf_live_view_text(&session->view);
-    return order.text ? mf_live_control_order(&session->view.control, &order) : STATUS_NO_MEMORY;
+    return order.text ? mf_live_view_order(&session->view, &order) : STATUS_NO_MEMORY;
 }
 
 static enum status begin(struct session *session) {

@@ -83,22 +83,41 @@ static void publish_state(struct live_view *view) {
     mf_live_view_publish(view, LIVE_STATE, writer);
 }
 
+/// The lock is held.
+static void set_phase(struct live_view *view, enum live_phase phase, const char *message) {
+    view->phase = phase;
+    snprintf(view->message, sizeof view->message, "%s", message ? message : "");
+    publish_state(view);
+}
+
 void mf_live_view_set_phase(struct live_view *view, enum live_phase phase, const char *message) {
     pthread_mutex_lock(&view->lock);
-    const bool same = view->phase == phase && message == NULL && phase != LIVE_CHOOSING;
-    if (!same) {
-        view->phase = phase;
-        snprintf(view->message, sizeof view->message, "%s", message ? message : "");
-        publish_state(view);
-    }
+    if (view->phase != phase || message != NULL || phase == LIVE_CHOOSING)
+        set_phase(view, phase, message);
     pthread_mutex_unlock(&view->lock);
+}
+
+/// The lock is held.
+static bool is_busy(const struct live_view *view) {
+    return view->phase == LIVE_RUNNING || view->phase == LIVE_PAUSED;
 }
 
 bool mf_live_view_is_busy(struct live_view *view) {
     pthread_mutex_lock(&view->lock);
-    const bool busy = view->phase == LIVE_RUNNING || view->phase == LIVE_PAUSED;
+    const bool busy = is_busy(view);
     pthread_mutex_unlock(&view->lock);
     return busy;
+}
+
+enum status mf_live_view_order(struct live_view *view, struct live_order *order) {
+    pthread_mutex_lock(&view->lock);
+    const bool busy = is_busy(view);
+    if (!busy) {
+        mf_live_control_order(&view->control, order);
+        set_phase(view, LIVE_RUNNING, NULL);
+    }
+    pthread_mutex_unlock(&view->lock);
+    return busy ? mf_status_fail(STATUS_BAD_INPUT, "a run is going on") : STATUS_OK;
 }
 
 enum status mf_live_view_is_fit(const char *file, const char *text, bool *is_fit) {

@@ -61,6 +61,11 @@ void mf_live_view_set_phase(struct live_view *view, enum live_phase phase, const
 /// Whether a run is going on, or about to.
 bool mf_live_view_is_busy(struct live_view *view);
 
+/// Ask for a run. From here on it is going on, and hears what is wished of it.
+/// @param[in,out] order  its text is taken over
+/// Fails: BAD_INPUT if one is.
+enum status mf_live_view_order(struct live_view *view, struct live_order *order) MUST_USE;
+
 /// Publish what a writer has, which is freed; without memory nothing is.
 void mf_live_view_publish(struct live_view *view, enum live_slot slot, struct json_writer *writer);
 

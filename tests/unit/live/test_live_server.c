@@ -188,7 +188,7 @@ static void test_wishes_are_read_strictly(void **state) {
 }
 
 static void test_file_is_opened_and_ordered(void **state) {
-    struct live_order order;
+    struct live_order order, other = {.text = NULL};
     (void)state;
     assert_int_equal(ask("POST /api/start", GOOD, ""), 400);
     assert_contains(answer, "choose a scene");
@@ -203,7 +203,14 @@ static void test_file_is_opened_and_ordered(void **state) {
     assert_int_equal(ask("POST /api/start?folder=../up", GOOD, "{}"), 400);
     assert_int_equal(symlink("/", "root"), 0);
     assert_int_equal(ask("POST /api/start?folder=root/tmp/out", GOOD, "{}"), 400);
+    assert_int_equal(ask("POST /api/wish", GOOD, "{\"wish\": \"pause\"}"), 400);
     assert_int_equal(ask("POST /api/start?folder=out&force=1", GOOD, "{\"box\": [6, 6, 6]}"), 200);
+    // A run that was ordered is going on: it hears wishes before it is taken, and no other begins.
+    assert_contains(answer, "\"running\"");
+    assert_int_equal(ask("POST /api/wish", GOOD, "{\"wish\": \"pause\"}"), 200);
+    assert_true(mf_live_control_wait(&view.control).paused);
+    assert_int_equal(ask("POST /api/start", GOOD, "{}"), 400);
+    assert_fails(mf_live_view_order(&view, &other), STATUS_BAD_INPUT, "going on");
     assert_true(mf_live_control_take(&view.control, &order));
     assert_string_equal(order.file, "scene.json");
     assert_string_equal(order.folder, "out");
