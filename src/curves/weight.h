@@ -16,6 +16,12 @@ static inline double weight_sanyal_shell(double squared, double inner, double ou
     return 1 - x * x * (3 - 2 * x);
 }
 
+/// r w'(r) of it.
+static inline double weight_sanyal_shell_stress(double squared, double inner, double outer) {
+    const double x = fmin(1, fmax(0, (squared - inner) / (outer - inner)));
+    return -12 * x * (1 - x) * squared / (outer - inner);
+}
+
 /// w = 1 for r < r_0, 1 − 3x² + 2x³ with x = (r² − r_0²)/(r_c² − r_0²) from there to r_c: the
 /// polynomial c_0 + c_2 r² + c_4 r⁴ + c_6 r⁶ whose value and slope go on smoothly at both ends.
 /// T. Sanyal and M. S. Shell, J. Chem. Phys. 145, 034109 (2016), eq. 6.

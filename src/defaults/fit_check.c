@@ -6,6 +6,7 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"
 #include "inversion/inversion.h"
+#include "problem/group_kind.h"
 #include "problem/measurement.h"
 #include "problem/unknowns.h"
 
@@ -66,9 +67,8 @@ static enum status check_range(const struct fit_file *fit, const char *file, con
 
 /// Whether a kind of targets is of bonds, angles or dihedrals some of which are looked for.
 static bool is_inverted(const struct fit_file *fit, int kind) {
-    const int order = mf_bonded_distribution_order(kind);
     for (size_t g = 0; g < fit->problem.bonded; g++)
-        if (fit->problem.group[g].order == order)
+        if (mf_group_kind_target(fit->problem.group[g].order) == kind)
             return true;
     return false;
 }

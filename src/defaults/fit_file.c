@@ -7,6 +7,7 @@
 #include "defaults/fit_base.h"
 #include "defaults/fit_check.h"
 #include "defaults/fit_defaults.h"
+#include "defaults/fit_densities.h"
 #include "defaults/fit_friction.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
@@ -156,6 +157,7 @@ static enum status read_root(struct fit_file *fit, struct json_object *root,
                                        &fit->scene.units};
     TRY(mf_target_files_read(&fit->files, root, &about));
     TRY(mf_fit_unknowns_read(fit, root));
+    TRY(mf_fit_densities_read(fit, root));
     TRY(read_method(fit, root, chosen));
     struct json_object core = mf_json_child(root, "core", false);
     mf_json_fields(&core, mf_fit_core_fields, &fit->core);
@@ -224,6 +226,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         problem->mode[m] = fit->scene.memory.name[m];
     state_groups(fit);
     compare_known(fit);
+    mf_fit_densities_state(fit, problem);
     const size_t others = mf_inverse_unknown_count(problem) -
                           problem->unknown[UNKNOWN_POTENTIAL].wanted -
                           problem->unknown[UNKNOWN_BONDED].wanted;

@@ -159,6 +159,8 @@ static void add_densities(struct entries *entries, const struct scene *scene) {
         } laws[] = {{"weight", &many_body->weight[t], INVERSE_OF_WEIGHT},
                     {"energy", &many_body->energy[t], INVERSE_OF_DENSITY_ENERGY}};
         for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+            if (scene_many_body_is_fitted(many_body, t))
+                continue;
             char prefix[INVERSE_NUMBER_NAME_SIZE];
             snprintf(prefix, sizeof prefix, "many_body.%s.%s.", many_body->law->term[t].name,
                      laws[k].key);

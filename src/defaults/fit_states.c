@@ -2,8 +2,10 @@
 #include "defaults/fit_states.h"
 
 #include "base/rng.h"
+#include "defaults/fit_densities.h"
 #include "inversion/inversion.h"
 #include "io/units_scale.h"
+#include "problem/group_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -201,8 +203,7 @@ enum status mf_fit_states_check(const struct fit_file *fit, const char *file) {
 static const double rounding = 0.02;
 
 static const char *name_of(const struct fit_file *fit, size_t g) {
-    const struct bonded_unknown *unknown = &fit->problem.group[g];
-    return fit->scene.molecules.molecules.group[unknown->order][unknown->group].name;
+    return mf_group_kind_group(&fit->problem.scene, &fit->problem.group[g]);
 }
 
 static enum status check_groups(const struct fit_file *fit, const struct fit_file *other,
@@ -230,7 +231,7 @@ static enum status refuse_bins(const struct fit_file *fit, const struct fit_file
                                const char *file) {
     const struct bonded_unknown *unknown = &fit->problem.group[g];
     const struct bonded_bins *first = &unknown->bins, *second = &other->problem.group[g].bins;
-    const double unit = mf_bonded_kinds[unknown->order]->is_length
+    const double unit = mf_group_kind_is_length(unknown->order)
                             ? mf_units_factor(&fit->scene.units, "lambda")
                             : 1;
     return mf_status_fail(
@@ -238,7 +239,7 @@ static enum status refuse_bins(const struct fit_file *fit, const struct fit_file
         "%s: states.%s: target.%s.%s has %zu bins of %.5g from %.5g, that of \"%s\" has %zu of "
         "%.5g from %.5g: they need not begin or end together, but must be as wide and have common "
         "edges; measure both with the same bins",
-        file, other->name, mf_targets_name(mf_bonded_distribution_kind(unknown->order)),
+        file, other->name, mf_targets_name(mf_group_kind_target(unknown->order)),
         name_of(fit, g), second->count, unit * second->width, unit * second->low, fit->name,
         first->count, unit * first->width, unit * first->low);
 }
@@ -247,7 +248,7 @@ static enum status refuse_bins(const struct fit_file *fit, const struct fit_file
 static enum status find_bins(struct fit_file *fit, size_t g, const char *file,
                              struct bonded_bins *all) {
     const struct bonded_bins *first = &fit->problem.group[g].bins;
-    const bool circle = mf_bonded_kinds[fit->problem.group[g].order]->periodic;
+    const bool circle = mf_group_kind_is_periodic(fit->problem.group[g].order);
     double begin = 0, end = (double)first->count;
     *all = *first;
     for (size_t s = 0; s < fit->others; s++) {
@@ -272,7 +273,10 @@ enum status mf_fit_states_widen(struct fit_file *fit, const char *file) {
         for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
             struct fit_file *state = mf_fit_states_at(fit, s);
             const struct bonded_unknown *unknown = &state->problem.group[g];
-            TRY(mf_target_files_widen(&state->files, unknown->order, (size_t)unknown->group, &all));
+            TRY(unknown->order == INVERSE_LOCAL_DENSITY
+                    ? mf_fit_densities_widen(state, all.count)
+                    : mf_target_files_widen(&state->files, unknown->order, (size_t)unknown->group,
+                                            &all));
         }
     }
     return STATUS_OK;

@@ -6,6 +6,7 @@
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sf_psi.h>
 #include <math.h>
+#include <string.h>
 
 enum status mf_inversion_band_init(struct inversion_band *band, size_t known, size_t points) {
     enum status status = STATUS_OK;
@@ -67,27 +68,45 @@ done:
     return status;
 }
 
-/// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
-/// the errors are those of U less its mean over the target. Σ ← P Σ Pᵀ, P = 1 − 1 wᵀ for w ~ p.
-static void take_constants_off(struct inversion *inversion) {
-    const struct potential_grid *grid = inversion_grid(inversion);
-    const size_t n = grid->known;
+/// Σ ← P Σ Pᵀ with P = 1 − v ℓᵀ: that of curves from which ℓ·x times the change v is taken off,
+/// ℓ·v = 1.
+static void take_off(struct inversion *inversion, const double *v, const double *l) {
+    const size_t n = inversion_grid(inversion)->known;
     double *covariance = inversion->course.band.covariance;
+    for (int side = 0; side < 2; side++)
+        for (size_t b = 0; b < n; b++) {
+            const size_t along = side ? n : 1, across = side ? 1 : n;
+            double part = 0;
+            for (size_t a = 0; a < n; a++)
+                part += l[a] * covariance[a * across + b * along];
+            for (size_t a = 0; a < n; a++)
+                covariance[a * across + b * along] -= part * v[a];
+        }
+}
+
+/// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
+/// the errors are those of U less its mean over the target. And f of local densities is known but
+/// for its slope: they are those of the convention.
+static enum status take_conventions_off(struct inversion *inversion) {
+    const struct potential_grid *grid = inversion_grid(inversion);
+    OWNED double *constant = NULL, *mean = NULL;
     size_t first = grid->pairs_known;
+    TRY_ARRAY(constant, grid->known);
+    TRY_ARRAY(mean, grid->known);
     for (size_t g = 0; g < grid->groups; first += grid->group[g++].own.known) {
         const struct bonded_grid *own = &grid->group[g].own;
         const double sum = mf_bonded_grid_mean(own) * (double)own->known;
-        for (int side = 0; side < 2; side++)
-            for (size_t b = 0; b < n; b++) {
-                const size_t along = side ? n : 1, across = side ? 1 : n;
-                double average = 0;
-                for (size_t a = 0; a < own->known; a++)
-                    average += own->target[own->first + a] / sum *
-                               covariance[(first + a) * across + b * along];
-                for (size_t a = 0; a < own->known; a++)
-                    covariance[(first + a) * across + b * along] -= average;
-            }
+        memset(constant, 0, grid->known * sizeof *constant);
+        memset(mean, 0, grid->known * sizeof *mean);
+        for (size_t a = 0; a < own->known; a++) {
+            constant[first + a] = 1;
+            mean[first + a] = own->target[own->first + a] / sum;
+        }
+        take_off(inversion, constant, mean);
     }
+    if (grid->shared.change)
+        take_off(inversion, grid->shared.change, grid->shared.weight);
+    return STATUS_OK;
 }
 
 /// Weights w of the best ramp, A = Σ w_a Φ_a, over the bins that are well known.
@@ -388,13 +407,13 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
                                               &band->ramp.directions)
               : mf_inversion_band_covariance(&system, birge, band->covariance,
                                              &band->ramp.directions));
-    take_constants_off(inversion);
+    CHECK(take_conventions_off(inversion));
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, birge, step));
     find_drifts(inversion, step, weight, scratch);
     if (inversion->course.has_walked) {
         add_walk(inversion, scratch);
-        take_constants_off(inversion);
+        CHECK(take_conventions_off(inversion));
     }
     add_drift(inversion, weight, scratch);
     add_pressure(inversion, scratch);

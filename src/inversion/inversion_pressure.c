@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion_state.h"
+#include "problem/group_kind.h"
 
 #include <math.h>
 
@@ -33,21 +34,39 @@ double mf_inversion_pressure_shift(const struct inversion_state *state) {
 
 /// Σ_a S_a ∂(−r_a U'(r_a))/∂U_b of bond lengths, U' being a central difference: what the value of
 /// a bin does to the virial of the bins beside it.
-static double bond_virial(const struct inversion_state *state, size_t b) {
-    const struct potential_grid *grid = &state->grid;
+static double bond_virial(const struct inversion_state *state, const struct bonded_bins *bins,
+                          size_t bin, size_t k) {
     const double *counts = state->replicas.counts.mean;
+    const double below = k > 0 ? counts[bin - 1] * bonded_bins_centre(bins, k - 1) : 0;
+    const double above =
+        k + 1 < bins->count ? counts[bin + 1] * bonded_bins_centre(bins, k + 1) : 0;
+    return (above - below) / (2 * bins->width);
+}
+
+/// The same of f of local densities, Σ_a T_a ∂(−f'(ρ_a))/∂f_b with the stresses T of the bins.
+/// @param[in] stress  shape [bins->count]
+static double density_virial(const double *stress, const struct bonded_bins *bins, size_t k) {
+    const double below = k > 0 ? stress[k - 1] : 0;
+    const double above = k + 1 < bins->count ? stress[k + 1] : 0;
+    return (above - below) / (2 * bins->width);
+}
+
+/// What the value of a bin of a group does to the virial, beside what it does to S.
+static double group_virial(const struct inversion_state *state, size_t b) {
+    const struct potential_grid *grid = &state->grid;
     const size_t point = grid->known_point[b], bin = grid->known_bin[b];
+    const double *stress =
+        state->replicas.counts.mean + state->bins + SAMPLER_SUMS + state->kirkwood_buff.pairs;
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *group = &grid->group[g];
-        const struct bonded_bins *bins = &group->own.unknown->bins;
-        if (!mf_bonded_kinds[group->own.unknown->order]->is_length || point < group->point ||
-            point >= group->point + group->own.points)
-            continue;
-        const size_t k = bin - group->bin;
-        const double below = k > 0 ? counts[bin - 1] * bonded_bins_centre(bins, k - 1) : 0;
-        const double above =
-            k + 1 < bins->count ? counts[bin + 1] * bonded_bins_centre(bins, k + 1) : 0;
-        return (above - below) / (2 * bins->width);
+        const struct bonded_unknown *unknown = group->own.unknown;
+        const bool here = point >= group->point && point < group->point + group->own.points;
+        if (here && unknown->order == INVERSE_LOCAL_DENSITY)
+            return density_virial(stress, &unknown->bins, bin - group->bin);
+        if (here && mf_group_kind_is_length(unknown->order))
+            return bond_virial(state, &unknown->bins, bin, bin - group->bin);
+        if (unknown->order == INVERSE_LOCAL_DENSITY)
+            stress += unknown->bins.count;
     }
     return 0;
 }
@@ -64,7 +83,7 @@ enum status mf_inversion_pressure_slopes(struct inversion_state *state) {
         double slope =
             -mf_comoments_covariance(counts, state->bins + SAMPLER_VIRIAL, grid->known_bin[b]) /
             state->problem->scene.temperature;
-        slope += bond_virial(state, b);
+        slope += group_virial(state, b);
         for (size_t a = 0; a < grid->pair_bins; a++)
             slope += counts->mean[a] * virial[a * grid->known + b];
         state->pressure.slope[b] = slope / virial_unit(state);

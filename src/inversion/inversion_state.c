@@ -119,17 +119,28 @@ enum status mf_inversion_state_init(struct inversion_state *state,
     return state->grid.blocks > 1 ? mf_inversion_low_rank_init(state) : STATUS_OK;
 }
 
+static void clear_interaction(struct inversion_state *state) {
+    mf_table_clear(&state->interaction.table);
+    mf_potential_grid_molecules_clear(&state->grid, &state->interaction.molecules);
+    mf_potential_grid_many_body_clear(&state->grid, &state->interaction.many_body);
+}
+
 enum status mf_inversion_tabulate(struct inversion_state *state) {
     const struct simulation_setup *scene = &state->problem->scene;
     const struct potential_grid *grid = &state->grid;
     const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
-    mf_table_clear(&state->interaction.table);
-    mf_potential_grid_molecules_clear(grid, &state->interaction.molecules);
+    const struct many_body *many_body = mf_many_body_find(scene->interaction, scene->interactions);
+    const double *energy = state->phi + grid->pair_points; // of the groups
+    clear_interaction(state);
     if (grid->pairs > 0)
         TRY(mf_potential_grid_table(grid, state->phi, &state->interaction.table));
-    return molecules ? mf_potential_grid_molecules(grid, state->phi + grid->pair_points, molecules,
-                                                   &state->interaction.molecules)
-                     : STATUS_OK;
+    if (molecules)
+        TRY(mf_potential_grid_molecules(grid, energy, molecules, &state->interaction.molecules));
+    if (many_body) {
+        TRY(mf_potential_grid_many_body(grid, energy, many_body, &state->interaction.many_body));
+        state->interaction.many_body.composition = state->composition;
+    }
+    return STATUS_OK;
 }
 
 enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
@@ -139,11 +150,7 @@ enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
     const struct rdf_bins *bins = &problem->targets.bins;
     const bool joined = mf_molecules_find(scene->interaction, scene->interactions) != NULL;
     const bool pairs = state->grid.pairs > 0;
-    const struct many_body *many_body = mf_many_body_find(scene->interaction, scene->interactions);
-    if (many_body) {
-        state->interaction.many_body = *many_body;
-        state->interaction.many_body.composition = state->composition;
-    }
+    const bool crowds = mf_many_body_find(scene->interaction, scene->interactions) != NULL;
     TRY(mf_inversion_tabulate(state));
     // What one cannot sample none can: molecules take long to be placed.
     return mf_replicas_init(
@@ -157,7 +164,7 @@ enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
                                  .width = bins->width,
                                  .bins = pairs ? bins->count : 0,
                                  .molecules = joined ? &state->interaction.molecules : NULL,
-                                 .many_body = many_body ? &state->interaction.many_body : NULL,
+                                 .many_body = crowds ? &state->interaction.many_body : NULL,
                                  .group = state->groups,
                                  .groups = state->grid.groups,
                                  .integrals = state->kirkwood_buff.pairs,
@@ -167,8 +174,7 @@ enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
 
 void mf_inversion_state_clear(struct inversion_state *state) {
     mf_replicas_clear(&state->replicas);
-    mf_table_clear(&state->interaction.table);
-    mf_potential_grid_molecules_clear(&state->grid, &state->interaction.molecules);
+    clear_interaction(state);
     mf_potential_grid_clear(&state->grid);
     mf_inversion_basis_clear(&state->basis);
     mf_inversion_basis_clear(&state->low_rank);

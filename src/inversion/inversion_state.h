@@ -49,7 +49,7 @@ struct inversion_target {
 struct inversion_interaction {
     struct table table;
     struct molecules molecules; ///< with the present U of the groups
-    struct many_body many_body; ///< the scene's, of the system that is sampled; its tables are lent
+    struct many_body many_body; ///< with the present f of the local densities
 };
 
 /// The excess of all iterations near the target: S̄ − S* at the mean potential, see

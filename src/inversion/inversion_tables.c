@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/output.h"
+#include "problem/group_kind.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -79,9 +80,8 @@ static enum status write_group(const struct inversion_state *state, size_t g,
     const struct simulation_setup *scene = &state->problem->scene;
     const struct potential_group *group = &state->grid.group[g];
     const struct bonded_unknown *unknown = group->own.unknown;
-    const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
     const struct observable_target *about =
-        mf_observable_kind(mf_bonded_distribution_kind(unknown->order)).target;
+        mf_observable_kind(mf_group_kind_target(unknown->order)).target;
     char path[OUTPUT_PATH_SIZE], file[TOPOLOGY_NAME_SIZE + 64], names[3][64];
     static const char *const words[3] = {"target", "result", "result_error"};
     for (int k = 0; k < 3; k++)
@@ -95,7 +95,7 @@ static enum status write_group(const struct inversion_state *state, size_t g,
         column[0][k] = bonded_bins_centre(&unknown->bins, k);
     fill(state, group->bin, unknown->bins.count, column);
     snprintf(file, sizeof file, "now_%s_%s.tsv", about->name,
-             molecules->group[unknown->order][unknown->group].name);
+             mf_group_kind_group(scene, unknown));
     folder->file(folder->context, file, path);
     return mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, unknown->bins.count);
 }

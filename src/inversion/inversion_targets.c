@@ -4,6 +4,7 @@
 #include "inversion/inversion_state.h"
 
 #include "observe/finite_size.h"
+#include "problem/group_kind.h"
 
 #include <math.h>
 
@@ -65,10 +66,10 @@ static void set_group(struct inversion_state *state, const struct potential_grou
     const struct simulation_setup *scene = &problem->scene;
     const struct bonded_unknown *unknown = group->own.unknown;
     const double *error =
-        problem->targets.target[mf_bonded_distribution_kind(unknown->order)].error + unknown->first;
+        problem->targets.target[mf_group_kind_target(unknown->order)].error + unknown->first;
     const double mean = mf_bonded_grid_mean(&group->own), peak = peak_of(&group->own);
-    const double terms = (double)mf_bonded_distribution_terms(
-        mf_molecules_find(scene->interaction, scene->interactions), unknown->order, unknown->group);
+    const double terms = (double)mf_group_kind_terms(
+        scene, unknown, (size_t)mf_composition_particles(&state->composition));
     const double unit = unknown->bins.width * terms;
     for (size_t k = 0; k < unknown->bins.count; k++) {
         const size_t bin = group->bin + k;
@@ -100,14 +101,18 @@ static void enter_group(struct inversion_state *state, size_t g) {
     const struct bonded_grid *own = &state->grid.group[g].own;
     const struct bonded_unknown *unknown = own->unknown;
     struct inversion_section *section =
-        add_section(state, mf_bonded_distribution_kind(unknown->order));
+        add_section(state, mf_group_kind_target(unknown->order));
     section->bins = unknown->bins.count;
     section->known_count = own->known;
     section->peak = peak_of(own);
-    state->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins};
+    state->groups[g] = (struct sampler_group){
+        unknown->order, unknown->group, unknown->bins,
+        unknown->order == INVERSE_LOCAL_DENSITY
+            ? mf_group_kind_density(&state->problem->targets)
+            : NULL};
     state->target.shape[state->grid.pairs + g] =
         (struct imc_shape){.bend = fmax(1, narrow * (double)own->known),
-                           .periodic = mf_bonded_kinds[unknown->order]->periodic};
+                           .periodic = mf_group_kind_is_periodic(unknown->order)};
 }
 
 void mf_inversion_count_targets(struct inversion_state *state) {

@@ -19,7 +19,10 @@ size_t mf_sampler_bins(const struct sampler_system *system) {
 }
 
 size_t mf_sampler_numbers(const struct sampler_system *system) {
-    return mf_sampler_bins(system) + SAMPLER_SUMS + system->integrals;
+    size_t stresses = 0;
+    for (size_t k = 0; k < system->groups; k++)
+        stresses += system->group[k].density ? system->group[k].bins.count : 0;
+    return mf_sampler_bins(system) + SAMPLER_SUMS + system->integrals + stresses;
 }
 
 /// The waves whose integrals are asked for.
@@ -44,11 +47,16 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                          .molecules = system->molecules,
                          .group = system->group,
                          .groups = system->groups,
+                         .integrals = system->integrals,
                          .histogram = {.low = system->low,
                                        .width = system->width,
                                        .bins = system->bins,
                                        .pairs = (size_t)mf_composition_pairs(system->composition)}};
     CHECK(begin_waves(sampler, system));
+    for (size_t k = 0; k < system->groups; k++)
+        if (system->group[k].density)
+            CHECK(mf_density_list_init(&sampler->densities, system->group[k].density, system->box,
+                                       (size_t)mf_composition_particles(system->composition)));
     if (system->molecules)
         CHECK(mf_whole_molecules_init(&sampler->whole, &system->molecules->topology));
     if (sampler->kind == SAMPLER_DYNAMICS) {
@@ -77,6 +85,7 @@ void mf_sampler_clear(struct sampler *sampler) {
     mf_hybrid_clear(&sampler->hybrid);
     mf_kirkwood_buff_waves_clear(&sampler->kirkwood_buff);
     mf_whole_molecules_clear(&sampler->whole);
+    mf_density_list_clear(&sampler->densities);
     mf_memory_free(sampler->histogram.counts);
     *sampler = (struct sampler){0};
 }
@@ -103,17 +112,43 @@ static const struct particles *particles_of(const struct sampler *sampler) {
                                              : &sampler->chain.particles;
 }
 
+/// Beads in each bin of their densities, or the sums of what they have there.
+/// @param[in] of  by id; NULL: 1
+static void count_densities(const struct density_list *densities, const struct bonded_bins *bins,
+                            const double *of, double *sums) {
+    for (size_t id = 0; id < densities->particles.count; id++) {
+        const double place = (densities->values[id] - bins->low) / bins->width;
+        if (place >= 0 && place < (double)bins->count)
+            sums[(size_t)place] += of ? of[id] : 1;
+    }
+}
+
 /// S of the groups in the present configuration, from `sample` on; returns their end.
 static double *count_groups(const struct sampler *sampler, double *sample) {
     const struct particles *particles = particles_of(sampler);
     for (size_t k = 0; k < sampler->groups; k++) {
         const struct sampler_group *group = &sampler->group[k];
         memset(sample, 0, group->bins.count * sizeof *sample);
-        mf_bonded_distribution_count(sampler->molecules, group->order, group->group, &group->bins,
-                                     particles, sample);
+        if (group->density)
+            count_densities(&sampler->densities, &group->bins, NULL, sample);
+        else
+            mf_bonded_distribution_count(sampler->molecules, group->order, group->group,
+                                         &group->bins, particles, sample);
         sample += group->bins.count;
     }
     return sample;
+}
+
+/// The stresses of the groups that are local densities, from `sample` on.
+static void sum_stresses(const struct sampler *sampler, double *sample) {
+    for (size_t k = 0; k < sampler->groups; k++) {
+        const struct sampler_group *group = &sampler->group[k];
+        if (group->density == NULL)
+            continue;
+        memset(sample, 0, group->bins.count * sizeof *sample);
+        count_densities(&sampler->densities, &group->bins, sampler->densities.stresses, sample);
+        sample += group->bins.count;
+    }
 }
 
 /// Add R_g² and R_e² of a molecule that was made whole.
@@ -156,6 +191,8 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     }
     for (size_t a = 0; a < bins; a++)
         sample[a] = counts[a];
+    if (sampler->densities.values)
+        TRY(mf_density_list_find(&sampler->densities, particles_of(sampler)));
     double *sum = count_groups(sampler, sample + bins);
     sum[SAMPLER_VIRIAL] = sums.virial;
     sum[SAMPLER_ENERGY] = sums.energy;
@@ -163,6 +200,7 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     if (sampler->waves)
         mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, particles_of(sampler), 1,
                                     sum + SAMPLER_SUMS);
+    sum_stresses(sampler, sum + SAMPLER_SUMS + sampler->integrals);
     return STATUS_OK;
 }
 

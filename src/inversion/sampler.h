@@ -9,6 +9,7 @@
 #include "dynamics/hybrid.h"
 #include "dynamics/metropolis.h"
 #include "observe/bonded_distribution.h"
+#include "observe/density_list.h"
 #include "observe/kirkwood_buff_waves.h"
 #include "system/whole_molecules.h"
 
@@ -21,24 +22,26 @@ enum sampler_kind {
 /// Names in the order of enum sampler_kind, NULL-terminated.
 extern const char *const mf_sampler_kinds[];
 
-/// A group of bonds, angles or dihedrals that is counted, and its bins.
+/// A group of bonds, angles or dihedrals that is counted, or local densities, and its bins.
 struct sampler_group {
     int order;
     int group;
     struct bonded_bins bins;
+    const struct weighted_density_settings *density; ///< NULL: of molecules
 };
 
 struct sampler {
     enum sampler_kind kind;            ///< not SAMPLER_AUTO
     const struct molecules *molecules; ///< NULL: single particles
     const struct sampler_group *group; ///< shape [groups]
-    size_t groups;
+    size_t groups, integrals;
     struct metropolis chain;         ///< of SAMPLER_MONTE_CARLO
     struct hybrid hybrid;            ///< of SAMPLER_DYNAMICS
     struct pair_histogram histogram; ///< of the chain's configuration
     bool waves;                      ///< the integrals are asked for
     struct kirkwood_buff_waves kirkwood_buff;
     struct whole_molecules whole; ///< of molecules, for their sizes
+    struct density_list densities; ///< of a group of local densities
 };
 
 /// What is to be sampled. Borrowed: the potential, which may be exchanged before mf_sampler_begin,
@@ -51,7 +54,7 @@ struct sampler_system {
     double low, width; ///< of the bins that count pairs, within the potential's cutoff [λ]
     size_t bins;       ///< of each pair type; 0: pairs are not counted
     const struct molecules *molecules; ///< or NULL; its laws may be exchanged as the potential may
-    const struct many_body *many_body; ///< or NULL; of SAMPLER_DYNAMICS alone
+    const struct many_body *many_body; ///< the same; of SAMPLER_DYNAMICS alone
     const struct sampler_group *group; ///< to be counted after the pairs, shape [groups]
     size_t groups;
     size_t integrals; ///< of Kirkwood and Buff: pairs of components, if they are asked for, or 0
@@ -63,7 +66,8 @@ struct sampler_system {
 /// Bins that are counted: of all pair types, and of the groups.
 size_t mf_sampler_bins(const struct sampler_system *system);
 
-/// Numbers of a sample: the bins, the sums, and the integrals of all pairs of components.
+/// Numbers of a sample: the bins, the sums, the integrals of all pairs of components, and the
+/// stresses of local densities.
 size_t mf_sampler_numbers(const struct sampler_system *system);
 
 /// Particles on a lattice, molecules as a scene places them. Must be cleared. Fails: as
@@ -94,7 +98,8 @@ enum sampler_sum {
 };
 
 /// Sweeps, then a sample: S of each bin of each pair type and of each group, then the sums,
-/// then the integrals of the configuration.
+/// then the integrals of the configuration, then of the bins of each group of local densities the
+/// stresses Σ_i Σ_j r w'(r_ij) of the beads i in them.
 /// @param[out] sample  shape [mf_sampler_numbers]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;

@@ -117,11 +117,12 @@ static double find_bin(const struct weighted_density *density, size_t bin, doubl
 }
 
 double mf_weighted_density_at(const struct weighted_density *density, double value, double *error) {
+    static const double rounding = 1e-6;
     const double bins = (double)density->settings.bins;
     const double place = value / density->settings.maximum * bins - 0.5;
     double errors[2];
     *error = NAN;
-    if (!(place >= -0.5 && place <= bins - 0.5))
+    if (!(place >= -0.5 && place <= bins - 0.5 + rounding))
         return NAN;
     const double low = fmin(fmax(floor(place), 0), bins - 1), high = fmin(low + 1, bins - 1);
     const double part = fmin(fmax(place - low, 0), 1);

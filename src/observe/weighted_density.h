@@ -8,6 +8,7 @@
 /// left out. Of an ideal gas the mean is ρ ∫w dV and the variance ρ ∫w² dV.
 #pragma once
 
+#include "base/statistics.h"
 #include "curves/weight.h"
 #include "observe/observable.h"
 #include "observe/sample_blocks.h"
@@ -28,6 +29,23 @@ static inline double weighted_density_weight(const struct weighted_density_setti
     return weight_sanyal_shell(squared, settings->inner_cutoff * settings->inner_cutoff,
                                settings->cutoff * settings->cutoff);
 }
+
+/// r w'(r) of a squared distance.
+static inline double weighted_density_stress(const struct weighted_density_settings *settings,
+                                             double squared) {
+    return weight_sanyal_shell_stress(squared, settings->inner_cutoff * settings->inner_cutoff,
+                                      settings->cutoff * settings->cutoff);
+}
+
+/// The number of its target among all kinds.
+int mf_weighted_density_kind(void);
+
+/// How many independent ones `count` bins from `first` on count as, by the scatter of the blocks of
+/// all replicas. Fails: NO_MEMORY.
+/// @param[in] states  of the observable, shape [replicas]
+enum status mf_weighted_density_independence(const void *const *states, size_t replicas,
+                                             size_t first, size_t count,
+                                             struct statistics_independence *found) MUST_USE;
 
 /// What is counted of many configurations. All zero is none.
 struct weighted_density {

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The same of a simulation's particles, by a list of its own that is as long as the weight is.
-// Tested: test_weighted_density (unit, cli).
+// The same of a simulation's particles. Tested: test_weighted_density (unit, cli).
 #include "base/memory.h"
+#include "observe/density_list.h"
 #include "observe/measure.h"
-#include "observe/weighted_density.h"
 
 #include <math.h>
 
 struct state {
     struct weighted_density density;
-    struct particles particles; ///< a sorted copy
-    struct neighbours neighbours;
-    double *values; ///< shape [count]: ρ by id
+    struct density_list list;
 };
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
@@ -22,46 +19,20 @@ static enum status begin(void *state, const void *settings, const struct simulat
     const struct box *const box = &simulation->setup.box;
     const size_t count = simulation->particles.count;
     TRY(mf_weighted_density_init(&s->density, wish, box, count, (size_t)plan->samples));
-    TRY(mf_particles_init(&s->particles, box, count));
-    const enum status status =
-        mf_neighbours_init(&s->neighbours, NEIGHBOURS_HALF, box, count, wish->cutoff, 0);
-    TRY(status == STATUS_BAD_INPUT ? mf_status_prefix(status, "weighted_density.cutoff") : status);
-    TRY_ARRAY(s->values, count);
-    return STATUS_OK;
+    return mf_density_list_init(&s->list, wish, box, count);
 }
 
 static void clear(void *state) {
     struct state *s = state;
     mf_weighted_density_clear(&s->density);
-    mf_particles_clear(&s->particles);
-    mf_neighbours_clear(&s->neighbours);
-    mf_memory_free(s->values);
+    mf_density_list_clear(&s->list);
     *s = (struct state){0};
-}
-
-static void add_pairs(void *context, const struct neighbours_batch *batch) {
-    struct state *s = context;
-    for (size_t k = 0; k < batch->count; k++) {
-        const double weight =
-            weighted_density_weight(&s->density.settings, (double)batch->squared[k]);
-        s->values[batch->id_i[k]] += weight;
-        s->values[batch->id_j[k]] += weight;
-    }
 }
 
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
-    const struct particles *const from = &simulation->particles;
-    const size_t count = from->count;
-    for (int d = 0; d < from->box.dimensions; d++)
-        memcpy(s->particles.position[d], from->position[d], count * sizeof *from->position[d]);
-    memcpy(s->particles.id, from->id, count * sizeof *from->id);
-    TRY(mf_particles_join(&s->particles, from->topology));
-    TRY(mf_neighbours_sort_and_build(&s->neighbours, &s->particles));
-    memset(s->values, 0, count * sizeof *s->values);
-    mf_neighbours_visit_pairs(&s->neighbours, &s->particles, s->density.settings.cutoff, add_pairs,
-                              s);
-    return mf_weighted_density_add(&s->density, s->values, count);
+    TRY(mf_density_list_find(&s->list, &simulation->particles));
+    return mf_weighted_density_add(&s->density, s->list.values, simulation->particles.count);
 }
 
 static size_t spans(void *state, struct memory_span *spans) {
@@ -175,3 +146,31 @@ const struct observable mf_weighted_density = {
     .targets = targets,
     .result = result,
 };
+
+int mf_weighted_density_kind(void) {
+    int kind = 0;
+    while (mf_observable_kind(kind).observable != &mf_weighted_density)
+        kind++;
+    return kind;
+}
+
+enum status mf_weighted_density_independence(const void *const *states, size_t replicas,
+                                             size_t first, size_t count,
+                                             struct statistics_independence *found) {
+    const struct state *const *all = (const struct state *const *)states;
+    OWNED double *series = NULL;
+    size_t blocks = SIZE_MAX;
+    for (size_t k = 0; k < replicas; k++) {
+        const size_t whole = mf_sample_blocks_whole(&all[k]->density.blocks);
+        blocks = whole < blocks ? whole : blocks;
+    }
+    TRY_ARRAY(series, count * replicas * blocks + 1);
+    for (size_t k = 0; k < count; k++)
+        for (size_t n = 0; n < replicas * blocks; n++) {
+            const struct weighted_density *const d = &all[n / blocks]->density;
+            series[k * replicas * blocks + n] =
+                d->sums[n % blocks * (size_t)d->settings.bins + first + k] /
+                d->blocks.samples[n % blocks];
+        }
+    return mf_statistics_independence(series, blocks, replicas, count, found);
+}

@@ -5,9 +5,11 @@
 
 #include "base/memory.h"
 #include "curves/bonded_table.h"
+#include "problem/group_kind.h"
 
 #include <gsl/gsl_spline.h>
 #include <math.h>
+#include <string.h>
 
 enum { FEWEST_BINS = BONDED_GRID_FEWEST_BINS };
 
@@ -16,7 +18,7 @@ enum { FEWEST_BINS = BONDED_GRID_FEWEST_BINS };
 static const double chord = 2, min_rise = 10;
 
 static bool is_periodic(const struct bonded_grid *grid) {
-    return mf_bonded_kinds[grid->unknown->order]->periodic;
+    return mf_group_kind_is_periodic(grid->unknown->order);
 }
 
 static double largest_of(const struct bonded_grid *grid, const double *target) {
@@ -28,9 +30,7 @@ static double largest_of(const struct bonded_grid *grid, const double *target) {
 
 /// Whether q can be the centre of a bin.
 static bool is_possible(const struct bonded_grid *grid, double q) {
-    static const double rounding = 1e-6;
-    const struct bonded_kind *kind = mf_bonded_kinds[grid->unknown->order];
-    return kind->periodic || (q > kind->low && q <= kind->high * (1 + rounding));
+    return mf_group_kind_is_possible(grid->unknown->order, q);
 }
 
 /// The bins first … end − 1 from the first to the last that a target has seen.
@@ -55,7 +55,7 @@ static const double *target_of(const struct bonded_grid *grid,
                                const struct inverse_problem *problem, size_t state) {
     const struct inverse_problem *other = problem->state[state];
     const ptrdiff_t g = grid->unknown - problem->group;
-    return other->targets.target[mf_bonded_distribution_kind(grid->unknown->order)].value +
+    return other->targets.target[mf_group_kind_target(grid->unknown->order)].value +
            other->group[g].first;
 }
 
@@ -84,6 +84,10 @@ static void find_margins(struct bonded_grid *grid) {
         grid->points = grid->known + 1;
         return;
     }
+    if (grid->unknown->order == INVERSE_LOCAL_DENSITY) { // f goes on as a straight line
+        grid->points = grid->known;
+        return;
+    }
     const double low = bonded_bins_centre(bins, grid->first);
     const double high = bonded_bins_centre(bins, grid->first + grid->known - 1);
     while (grid->below < max && is_possible(grid, low - (double)(grid->below + 1) * bins->width))
@@ -95,13 +99,11 @@ static void find_margins(struct bonded_grid *grid) {
 
 enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_problem *problem,
                                 const struct bonded_unknown *unknown) {
-    const struct molecules *molecules =
-        mf_molecules_find(problem->scene.interaction, problem->scene.interactions);
-    const char *kind = mf_bonded_kinds[unknown->order]->name,
-               *name = molecules->group[unknown->order][unknown->group].name;
+    const char *kind = mf_group_kind_name(unknown->order),
+               *name = mf_group_kind_group(&problem->scene, unknown);
     *grid = (struct bonded_grid){
         .unknown = unknown,
-        .target = problem->targets.target[mf_bonded_distribution_kind(unknown->order)].value +
+        .target = problem->targets.target[mf_group_kind_target(unknown->order)].value +
                   unknown->first,
         .temperature = problem->scene.temperature,
         .dimensions = problem->scene.box.dimensions};
@@ -115,9 +117,9 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
     if (grid->known < FEWEST_BINS)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "the target of the %s \"%s\" has only %zu bin%s with a p above %g of "
-                              "its peak: narrower bins are needed, or a law in \"scene.%ss\"",
+                              "its peak: narrower bins are needed, or a law in \"scene.%s\"",
                               kind, name, grid->known, grid->known == 1 ? "" : "s",
-                              mf_bonded_distribution_seen, kind);
+                              mf_bonded_distribution_seen, mf_group_kind_file(unknown->order));
     return STATUS_OK;
 }
 
@@ -211,12 +213,15 @@ void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
     const double seen = mf_bonded_distribution_seen * largest_of(grid, grid->target);
     const struct bonded_grid own = seen_by_itself(grid);
     double *known = energy + own.below;
+    if (unknown->order == INVERSE_LOCAL_DENSITY) { // most of p is what pairs make of it
+        memset(energy, 0, grid->points * sizeof *energy);
+        return;
+    }
     for (size_t k = 0; k < own.known; k++) {
         const size_t bin = own.first + k;
         const double p = fmax(grid->target[bin], seen);
         known[k] = -grid->temperature *
-                   log(p / mf_bonded_distribution_jacobian(unknown->order, grid->dimensions,
-                                                           &unknown->bins, bin));
+                   log(p / mf_group_kind_jacobian(unknown->order, grid->dimensions, &unknown->bins, bin));
     }
     mf_bonded_grid_level(&own, energy);
     mf_bonded_grid_complete(&own, energy);
@@ -252,12 +257,28 @@ void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy) {
     extend(grid, energy + grid->below + grid->known - 1, 1, above, above < FEWEST_BINS);
 }
 
+/// Where the points are.
+static void find_places(const struct bonded_grid *grid, double *q) {
+    for (size_t k = 0; k < grid->points; k++)
+        q[k] = mf_bonded_grid_place(grid, k);
+}
+
 enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *energy,
                                  struct bonded_curve *curve) {
     OWNED double *q = NULL;
     TRY_ARRAY(q, grid->points);
-    for (size_t k = 0; k < grid->points; k++)
-        q[k] = mf_bonded_grid_place(grid, k);
+    find_places(grid, q);
     TRY(mf_bonded_create(curve, mf_bonded_kinds[grid->unknown->order]->table));
     return mf_bonded_table_set_points(curve, q, energy, grid->points);
+}
+
+enum status mf_bonded_grid_density(const struct bonded_grid *grid, const double *energy,
+                                   struct density_energy *density) {
+    OWNED double *rho = NULL;
+    CLEARED_BY(mf_curve_clear) struct curve curve = {0};
+    TRY_ARRAY(rho, grid->points);
+    find_places(grid, rho);
+    TRY(mf_curve_create(&curve, &mf_density_energy_table));
+    TRY(mf_density_energy_set_points(&curve, rho, energy, grid->points));
+    return mf_density_energy_init(density, &curve);
 }

@@ -49,6 +49,10 @@ void mf_bonded_grid_complete(const struct bonded_grid *grid, double *energy);
 enum status mf_bonded_grid_curve(const struct bonded_grid *grid, const double *energy,
                                  struct bonded_curve *curve) MUST_USE;
 
+/// The same of f(ρ), to be cleared with mf_density_energy_clear. Fails: NO_MEMORY.
+enum status mf_bonded_grid_density(const struct bonded_grid *grid, const double *energy,
+                                   struct density_energy *density) MUST_USE;
+
 /// Whether p of a bin of the target, of one state at least, is above this part of its peak.
 bool mf_bonded_grid_is_above(const struct bonded_grid *grid, const struct inverse_problem *problem,
                              size_t bin, double part);

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "curves/curve.h"
 #include "dynamics/simulation.h"
+#include "forces/many_body.h"
 #include "observe/bonded_distribution.h"
 #include "optimise/optimiser.h"
 #include "problem/targets.h"
@@ -131,16 +132,22 @@ struct bonded_shape {
 };
 extern const struct field mf_inverse_group_fields[];
 
-/// A group of bonds, angles or dihedrals whose U(q) is to be found.
+/// The order of what is no term of molecules: local densities of beads, with an energy f(ρ).
+enum { INVERSE_LOCAL_DENSITY = BONDED_KINDS };
+
+/// A group of bonds, angles or dihedrals whose U(q) is to be found, or a local density with f(ρ).
 struct bonded_unknown {
     int order;
-    int group;               ///< among those of its order
+    int group;               ///< among those of its order, or of the scene's local densities
     struct bonded_bins bins; ///< of its target
     size_t first;            ///< its first value in the target of its order
     struct bonded_shape shape;
 };
 
-enum { INVERSE_MAX_BONDED = (int)BONDED_KINDS * (int)MOLECULES_MAX_GROUPS };
+enum {
+    INVERSE_MAX_BONDED =
+        (int)BONDED_KINDS * (int)MOLECULES_MAX_GROUPS + (int)MANY_BODY_MAX_TERMS
+};
 
 enum { INVERSE_MAX_STATES = 16 };
 

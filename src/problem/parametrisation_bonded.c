@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "curves/shape.h"
+#include "problem/group_kind.h"
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -31,7 +32,7 @@ static enum status fill_splines(const struct bonded_grid *grid, size_t count, do
 enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size_t count,
                                             double *basis) {
     const double whole = mf_bonded_grid_mean(grid) * (double)grid->known;
-    if (mf_bonded_kinds[grid->unknown->order]->periodic)
+    if (mf_group_kind_is_periodic(grid->unknown->order))
         fill_waves(grid, count, basis);
     else
         TRY(fill_splines(grid, count, basis));

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "curves/core.h"
 #include "curves/sampled.h"
+#include "problem/group_kind.h"
 
 #include <math.h>
 #include <string.h>
@@ -162,6 +163,7 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     index_known(grid, problem);
     NEW_ARRAY(grid->r, grid->points);
     place_points(grid, bins);
+    CHECK(mf_potential_grid_find_shared(grid, problem));
 done:
     if (status != STATUS_OK)
         mf_potential_grid_clear(grid);
@@ -178,6 +180,8 @@ void mf_potential_grid_clear(struct potential_grid *grid) {
     mf_memory_free(grid->seen);
     mf_memory_free(grid->r);
     mf_memory_free(grid->group);
+    mf_memory_free(grid->shared.change);
+    mf_memory_free(grid->shared.weight);
     *grid = (struct potential_grid){0};
 }
 
@@ -227,6 +231,7 @@ void mf_potential_grid_complete_groups(const struct potential_grid *grid, double
 }
 
 void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) {
+    mf_potential_grid_remove_shared(grid, phi);
     mf_potential_grid_complete_pairs(grid, phi);
     for (size_t g = 0; g < grid->groups; g++)
         mf_bonded_grid_level(&grid->group[g].own, phi + grid->group[g].point);
@@ -236,7 +241,7 @@ void mf_potential_grid_complete(const struct potential_grid *grid, double *phi) 
 void mf_potential_grid_close(const struct potential_grid *grid, size_t group, double *values) {
     const struct potential_group *own = &grid->group[group];
     double *block = values + own->point;
-    if (mf_bonded_kinds[own->own.unknown->order]->periodic)
+    if (mf_group_kind_is_periodic(own->own.unknown->order))
         block[own->own.known] = block[0];
 }
 
@@ -266,28 +271,64 @@ done:
     return status;
 }
 
+/// The curve of a group that is a term of molecules; NULL of a local density.
+static struct bonded_curve *curve_of(const struct potential_grid *grid, size_t g,
+                                     struct molecules *molecules) {
+    const struct bonded_unknown *unknown = grid->group[g].own.unknown;
+    return unknown->order == INVERSE_LOCAL_DENSITY
+               ? NULL
+               : &molecules->group[unknown->order][unknown->group].curve;
+}
+
 enum status mf_potential_grid_molecules(const struct potential_grid *grid, const double *energy,
                                         const struct molecules *from, struct molecules *to) {
     *to = *from;
-    for (size_t g = 0; g < grid->groups; g++) {
-        const struct bonded_unknown *unknown = grid->group[g].own.unknown;
-        to->group[unknown->order][unknown->group].curve = (struct bonded_curve){0};
-    }
+    for (size_t g = 0; g < grid->groups; g++)
+        if (curve_of(grid, g, to))
+            *curve_of(grid, g, to) = (struct bonded_curve){0};
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *group = &grid->group[g];
-        const struct bonded_unknown *unknown = group->own.unknown;
-        TRY(mf_bonded_grid_curve(&group->own, energy + (group->point - grid->pair_points),
-                                 &to->group[unknown->order][unknown->group].curve));
+        if (curve_of(grid, g, to))
+            TRY(mf_bonded_grid_curve(&group->own, energy + (group->point - grid->pair_points),
+                                     curve_of(grid, g, to)));
     }
     return STATUS_OK;
 }
 
 void mf_potential_grid_molecules_clear(const struct potential_grid *grid,
                                        struct molecules *molecules) {
+    for (size_t g = 0; g < grid->groups; g++)
+        if (curve_of(grid, g, molecules))
+            mf_bonded_clear(curve_of(grid, g, molecules));
+}
+
+/// The energy of a group that is a local density; NULL of others.
+static struct density_energy *energy_of(const struct potential_grid *grid, size_t g,
+                                        struct many_body *many_body) {
+    const struct bonded_unknown *unknown = grid->group[g].own.unknown;
+    return unknown->order == INVERSE_LOCAL_DENSITY ? &many_body->term[unknown->group].energy : NULL;
+}
+
+enum status mf_potential_grid_many_body(const struct potential_grid *grid, const double *energy,
+                                        const struct many_body *from, struct many_body *to) {
+    *to = *from;
+    for (size_t g = 0; g < grid->groups; g++)
+        if (energy_of(grid, g, to))
+            *energy_of(grid, g, to) = (struct density_energy){0};
     for (size_t g = 0; g < grid->groups; g++) {
-        const struct bonded_unknown *unknown = grid->group[g].own.unknown;
-        mf_bonded_clear(&molecules->group[unknown->order][unknown->group].curve);
+        const struct potential_group *group = &grid->group[g];
+        if (energy_of(grid, g, to))
+            TRY(mf_bonded_grid_density(&group->own, energy + (group->point - grid->pair_points),
+                                       energy_of(grid, g, to)));
     }
+    return STATUS_OK;
+}
+
+void mf_potential_grid_many_body_clear(const struct potential_grid *grid,
+                                       struct many_body *many_body) {
+    for (size_t g = 0; g < grid->groups; g++)
+        if (energy_of(grid, g, many_body))
+            mf_density_energy_clear(energy_of(grid, g, many_body));
 }
 
 void mf_potential_grid_start_pairs(const struct potential_grid *grid,

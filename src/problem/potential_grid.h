@@ -33,6 +33,12 @@ struct potential_grid {
                          ///< another state's
     double *r;           ///< shape [points] [λ], of angles [degrees]
     double stiffness;
+    /// The straight line of f(ρ), which is a potential of pairs: f less s ρ, and Φ plus 2 s w(r),
+    /// are the same energy. Shape [known], or NULL without both.
+    struct {
+        double *change; ///< (ρ, −2 w): what takes away a slope of 1
+        double *weight; ///< slope of f = Σ weight f, the best line over the target's p(ρ)
+    } shared;
     struct potential_group {
         struct bonded_grid own;
         size_t point, bin; ///< where its points and bins begin among all
@@ -51,12 +57,20 @@ size_t mf_potential_grid_block(const struct potential_grid *grid, size_t pair);
 /// Whether a point of pairs is in the core of its block.
 bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point);
 
-/// Complete phi, shape [points], from its known values: core below, 0 at the cutoff; U with a least
+/// Complete phi, shape [points], from its known values, less what is shared: core below, 0 at the cutoff; U with a least
 /// value of 0, and beyond what the target knows. Or, with the constants of U left as they are,
 /// pairs alone, shape [pair_points], or groups, shape [points − pair_points].
 void mf_potential_grid_complete(const struct potential_grid *grid, double *phi);
 void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double *phi);
 void mf_potential_grid_complete_groups(const struct potential_grid *grid, double *energy);
+
+/// Find what f and Φ share. Fails: NO_MEMORY.
+enum status mf_potential_grid_find_shared(struct potential_grid *grid,
+                                          const struct inverse_problem *problem) MUST_USE;
+
+/// The convention: f has no slope, of its best line over p(ρ), and Φ has it all. phi, shape
+/// [points], of which the known values change.
+void mf_potential_grid_remove_shared(const struct potential_grid *grid, double *phi);
 
 /// What a group of dihedrals has at its first point it has at its last, which is the same: of
 /// errors.
@@ -75,6 +89,13 @@ enum status mf_potential_grid_molecules(const struct potential_grid *grid, const
                                         struct molecules *to) MUST_USE;
 void mf_potential_grid_molecules_clear(const struct potential_grid *grid,
                                        struct molecules *molecules);
+
+/// The same of the scene's local densities, with the energies that are looked for.
+enum status mf_potential_grid_many_body(const struct potential_grid *grid, const double *energy,
+                                        const struct many_body *from,
+                                        struct many_body *to) MUST_USE;
+void mf_potential_grid_many_body_clear(const struct potential_grid *grid,
+                                       struct many_body *many_body);
 
 /// Where the pairs of a fit begin: the problem's start curves, or the potentials of mean force
 /// −k_B T ln g*; shape [pair_points].

@@ -2,6 +2,7 @@
 #include "problem/unknowns.h"
 
 #include "base/memory.h"
+#include "problem/group_kind.h"
 #include "problem/numbers.h"
 
 #include <stdio.h>
@@ -79,7 +80,7 @@ const char *mf_unknowns_heading(const struct unknowns *unknowns, enum unknown_ki
     if (kind != UNKNOWN_BONDED)
         return "r[lambda]";
     const int order = unknowns->potential.group[curve].own.unknown->order;
-    return mf_observable_kind(mf_bonded_distribution_kind(order)).target->argument;
+    return mf_observable_kind(mf_group_kind_target(order)).target->argument;
 }
 
 const char *mf_unknowns_unit(enum unknown_kind kind) {
@@ -98,12 +99,9 @@ void mf_unknowns_curve_name(const struct unknowns *unknowns, enum unknown_kind k
                             char name[UNKNOWNS_NAME_SIZE]) {
     char pair[COMPOSITION_PAIR_NAME_SIZE] = "", own[UNKNOWNS_NAME_SIZE];
     if (kind == UNKNOWN_BONDED) {
-        const struct simulation_setup *scene = &unknowns->problem->scene;
-        const struct molecules *molecules =
-            mf_molecules_find(scene->interaction, scene->interactions);
         const struct bonded_unknown *group = unknowns->potential.group[curve].own.unknown;
-        snprintf(name, UNKNOWNS_NAME_SIZE, "%ss_%s", mf_bonded_kinds[group->order]->name,
-                 molecules->group[group->order][group->group].name);
+        snprintf(name, UNKNOWNS_NAME_SIZE, "%s_%s", mf_group_kind_file(group->order),
+                 mf_group_kind_group(&unknowns->problem->scene, group));
         return;
     }
     mf_unknowns_kind_name(unknowns, kind, own);
@@ -139,16 +137,27 @@ bool mf_unknowns_has_start(const struct unknowns *unknowns, enum unknown_kind ki
     return false;
 }
 
-/// The scene's molecules with the curves of the groups.
-static enum status make_molecules(const struct unknowns *unknowns, const double *curve,
-                                  struct unknowns_laws *laws) {
-    struct simulation_setup *scene = &laws->problem.scene;
-    const struct molecules *from = mf_molecules_find(scene->interaction, scene->interactions);
-    laws->grid = &unknowns->potential;
-    TRY(mf_potential_grid_molecules(laws->grid, curve, from, &laws->molecules));
+/// Let an interaction of the scene have other parameters.
+static void exchange(struct simulation_setup *scene, const struct interaction *kind,
+                     const void *parameters) {
     for (int k = 0; k < scene->interactions; k++)
-        if (scene->interaction[k].kind == &mf_molecules)
-            scene->interaction[k].parameters = &laws->molecules;
+        if (scene->interaction[k].kind == kind)
+            scene->interaction[k].parameters = parameters;
+}
+
+/// The scene's molecules and local densities with the curves of the groups.
+static enum status make_groups(const struct unknowns *unknowns, const double *curve,
+                               struct unknowns_laws *laws) {
+    struct simulation_setup *scene = &laws->problem.scene;
+    const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
+    const struct many_body *many_body = mf_many_body_find(scene->interaction, scene->interactions);
+    laws->grid = &unknowns->potential;
+    if (molecules)
+        TRY(mf_potential_grid_molecules(laws->grid, curve, molecules, &laws->molecules));
+    if (many_body)
+        TRY(mf_potential_grid_many_body(laws->grid, curve, many_body, &laws->many_body));
+    exchange(scene, &mf_molecules, &laws->molecules);
+    exchange(scene, &mf_many_body, &laws->many_body);
     return STATUS_OK;
 }
 
@@ -160,7 +169,7 @@ enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
     for (int kind = 0; kind < UNKNOWN_BONDED; kind++)
         laws->table[kind] = *mf_numbers_table_of(&laws->problem.scene, kind);
     if (curve[UNKNOWN_BONDED])
-        TRY(make_molecules(unknowns, curve[UNKNOWN_BONDED], laws));
+        TRY(make_groups(unknowns, curve[UNKNOWN_BONDED], laws));
     for (int kind = 0; kind < UNKNOWN_BONDED; kind++) {
         struct table *own = &laws->own.table[kind];
         if (curve[kind] == NULL)
@@ -176,8 +185,10 @@ enum status mf_unknowns_laws_make(const struct unknowns *unknowns,
 
 void mf_unknowns_laws_clear(struct unknowns_laws *laws) {
     mf_numbers_own_clear(&laws->own);
-    if (laws->grid)
+    if (laws->grid) {
         mf_potential_grid_molecules_clear(laws->grid, &laws->molecules);
+        mf_potential_grid_many_body_clear(laws->grid, &laws->many_body);
+    }
 }
 
 enum status mf_unknowns_laws_start(const struct unknowns *unknowns, struct unknowns_laws *laws) {

@@ -71,6 +71,7 @@ struct unknowns_laws {
     struct numbers_own own;              ///< zero for what is the scene's
     const struct table *table[UNKNOWNS]; ///< those of memory also stand in the scene of `problem`
     struct molecules molecules;          ///< with what is fitted, if any group is unknown
+    struct many_body many_body;          ///< likewise
     const struct potential_grid *grid;   ///< of these; borrowed
 };
 enum status mf_unknowns_laws_make(const struct unknowns *unknowns,

@@ -8,6 +8,7 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/motion.h"
 #include "observe/rdf_observable.h"
+#include "problem/group_kind.h"
 
 #include <math.h>
 
@@ -206,7 +207,7 @@ static void find_worst(const struct inverse_problem *problem, struct verificatio
                                                       verification->observed.error[integrals]);
     for (size_t g = 0; g < problem->bonded; g++) {
         const struct bonded_unknown *group = &problem->group[g];
-        add_part(problem, mf_bonded_distribution_kind(group->order), group->first,
+        add_part(problem, mf_group_kind_target(group->order), group->first,
                  group->bins.count, verification);
     }
     const size_t bins = problem->compared.bins.count;

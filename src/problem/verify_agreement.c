@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "observe/rdf_observable.h"
+#include "problem/group_kind.h"
 #include "problem/potential_grid.h"
 
 #include <gsl/gsl_cdf.h>
@@ -47,6 +48,22 @@ static enum status add_pairs(const struct potential_grid *grid, const struct mea
     return STATUS_OK;
 }
 
+/// How many independent values the bins of a group are, counted from its first.
+static enum status find_independence(const struct bonded_unknown *unknown,
+                                     const struct measurement *replicas, size_t count,
+                                     const void **states, struct verify_section *section) {
+    const bool of_density = unknown->order == INVERSE_LOCAL_DENSITY;
+    const struct observable *observable =
+        of_density ? &mf_weighted_density : mf_bonded_distribution_of(unknown->order);
+    for (size_t k = 0; k < count; k++)
+        states[k] = mf_measurement_state(&replicas[k], observable);
+    return of_density
+               ? mf_weighted_density_independence(states, count, section->first, section->count,
+                                                  &section->known)
+               : mf_bonded_distribution_independence(states, count, unknown->group, section->first,
+                                                     section->count, &section->known);
+}
+
 static enum status add_groups(const struct potential_grid *grid, const struct measurement *replicas,
                               size_t count, struct verify_sections *sections) {
     OWNED const void **states = NULL;
@@ -56,16 +73,12 @@ static enum status add_groups(const struct potential_grid *grid, const struct me
         const struct bonded_unknown *const unknown = grid->group[g].own.unknown;
         const size_t end = known + grid->group[g].own.known;
         struct verify_section *const section =
-            add(sections, grid, known, end, mf_bonded_distribution_kind(unknown->order));
+            add(sections, grid, known, end, mf_group_kind_target(unknown->order));
         known = end;
         if (section == NULL)
             continue;
-        for (size_t k = 0; k < count; k++)
-            states[k] =
-                mf_measurement_state(&replicas[k], mf_bonded_distribution_of(unknown->order));
         section->first -= grid->group[g].bin;
-        TRY(mf_bonded_distribution_independence(states, count, unknown->group, section->first,
-                                                section->count, &section->known));
+        TRY(find_independence(unknown, replicas, count, states, section));
         section->first += unknown->first;
     }
     return STATUS_OK;

@@ -3,6 +3,7 @@
 
 #include "base/number_text.h"
 #include "observe/kirkwood_buff_observable.h"
+#include "problem/group_kind.h"
 #include "report/fit_step.h"
 
 #include <math.h>
@@ -141,8 +142,8 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
     if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&
         contradicts_integrals(verification, noise_margin, units, reason))
         return true;
-    for (int order = 0; order < BONDED_KINDS; order++) {
-        const int kind = mf_bonded_distribution_kind(order);
+    for (int order = 0; order <= INVERSE_LOCAL_DENSITY; order++) {
+        const int kind = mf_group_kind_target(order);
         if (verify_agreement_holds(&agreement[kind]))
             continue;
         report_structure(mf_targets_name(kind), &agreement[kind].distance, verification,

@@ -327,7 +327,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
                              unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
     TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
-    TRY(mf_scene_many_body_read(&scene->many_body, object, &scene->setup));
+    TRY(mf_scene_many_body_read(&scene->many_body, object, &scene->setup, fitted != NULL));
     enter_molecules(scene, object);
     TRY(read_dynamics(scene, object, unknown));
     scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;

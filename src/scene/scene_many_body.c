@@ -155,7 +155,8 @@ bool mf_scene_many_body_remark(const struct scene_many_body *many_body, const vo
 }
 
 static enum status read_term(struct scene_many_body *many_body, struct json_object *object,
-                             const char *name, const struct simulation_setup *setup) {
+                             const char *name, const struct simulation_setup *setup,
+                             bool fitted) {
     struct many_body *law = many_body->law;
     const int t = law->terms, dimensions = setup->box.dimensions;
     if (t == MANY_BODY_MAX_TERMS || !is_plain(name)) {
@@ -180,17 +181,18 @@ static enum status read_term(struct scene_many_body *many_body, struct json_obje
                       "no density occurs: no bead of its central types has another one of its "
                       "neighbours' types");
     TRY(read_weight(&many_body->weight[t], &term->weight, &own, dimensions));
-    TRY(read_energy(&many_body->energy[t], &term->energy, &own, dimensions,
-                    density_unit(&many_body->weight[t], dimensions)));
+    if (!fitted || mf_json_is_member(&own, "energy"))
+        TRY(read_energy(&many_body->energy[t], &term->energy, &own, dimensions,
+                        density_unit(&many_body->weight[t], dimensions)));
     mf_json_finish(&own);
-    if (mf_json_fault_count(own.document) == faults &&
+    if (mf_json_fault_count(own.document) == faults && !scene_many_body_is_fitted(many_body, t) &&
         mf_density_energy_check_weight(&many_body->energy[t], &many_body->weight[t]) != STATUS_OK)
         mf_json_fault(&own, "energy", "%s", mf_status_message());
     return STATUS_OK;
 }
 
 enum status mf_scene_many_body_read(struct scene_many_body *many_body, struct json_object *scene,
-                                    struct simulation_setup *setup) {
+                                    struct simulation_setup *setup, bool fitted) {
     const char *name;
     struct json_object object = mf_json_child(scene, "many_body", false);
     if (object.item == NULL || mf_json_key(&object, 0) == NULL)
@@ -198,7 +200,7 @@ enum status mf_scene_many_body_read(struct scene_many_body *many_body, struct js
     TRY_ARRAY(many_body->law, 1);
     many_body->law->composition = setup->composition;
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++)
-        TRY(read_term(many_body, &object, name, setup));
+        TRY(read_term(many_body, &object, name, setup, fitted));
     mf_json_finish(&object);
     setup->interaction[setup->interactions++] =
         (struct interaction_choice){&mf_many_body, many_body->law};
@@ -224,7 +226,8 @@ void mf_scene_many_body_write(const struct scene_many_body *many_body, struct js
         mf_json_begin(writer, many_body->law->term[t].name);
         mf_json_write_fields(writer, mf_scene_many_body_fields, &many_body->types[t]);
         mf_scene_write_curve(&many_body->weight[t], writer, "weight");
-        mf_scene_write_curve(&many_body->energy[t], writer, "energy");
+        if (!scene_many_body_is_fitted(many_body, t))
+            mf_scene_write_curve(&many_body->energy[t], writer, "energy");
         mf_json_end(writer);
     }
     mf_json_end(writer);

@@ -25,8 +25,14 @@ struct scene_many_body {
 
 /// Read the member "many_body" of `scene`, if it is there, and let it act in `setup`, whose box and
 /// composition are known. Faults go to the document. Fails: NO_MEMORY.
+/// @param[in] fitted  an energy may be left out, which is 0 then, and to be found
 enum status mf_scene_many_body_read(struct scene_many_body *many_body, struct json_object *scene,
-                                    struct simulation_setup *setup) MUST_USE;
+                                    struct simulation_setup *setup, bool fitted) MUST_USE;
+
+/// Whether the energy of a term is to be found.
+static inline bool scene_many_body_is_fitted(const struct scene_many_body *many_body, int term) {
+    return many_body->energy[term].family == NULL;
+}
 void mf_scene_many_body_clear(struct scene_many_body *many_body);
 
 /// What a term was found to do beyond the ends of its table since the begin, in one line that names
