@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# U of a group of bonds, angles or dihedrals that was found, on that of the iterations before it, light
-# to dark. Where the target says nothing, U goes on as a parabola or a line: dashed.
-# Reads the table that MESOFIT_TABLE names: r, theta or phi, energy, energy_error (nan where the target
+# U of a group of bonds, angles or dihedrals that was found, or f of a local density, on that of the
+# iterations before it, light to dark. Where the target says nothing, U goes on as a parabola or a
+# line: dashed.
+# Reads the table that MESOFIT_TABLE names: r, theta, phi or rho, energy, energy_error (nan where the target
 # says nothing), perhaps energy[kJ/mol], and the history of iterations beside it.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/iterations.gp"
 
 symbol = symbol_of(first_of(table))
-U = "{/:Italic U}(" . symbol . ")"
+U = (first_of(table) eq "rho" ? "{/:Italic f}(" : "{/:Italic U}(") . symbol . ")"
 kJ = factor_of(table, "energy[kJ/mol]", 2)
 energy_axis = in_units(table, "energy[kJ/mol]", U . " / (kJ/mol)", U . " / {/:Italic k}_B{/:Italic T}")
 

@@ -140,7 +140,7 @@ unit_of(file, n) = system(sprintf("awk -F '\t' '/^#/ && NF > 1 { h = $%d; if (!s
     gsub(/lambda/, \"{/:Italic λ}\", h); gsub(/tau/, \"{/:Italic τ}\", h); print h; exit }'", n) . from(file))
 per_unit(symbol, file, n) = unit_of(file, n) eq "" ? symbol : symbol . " / " . unit_of(file, n)
 # How the first column of a molecule's table is called.
-symbol_of(first) = first eq "theta" ? "{/:Italic θ}" : first eq "phi" ? "{/:Italic φ}" : first eq "time" ? "{/:Italic t}" : "{/:Italic r}"
+symbol_of(first) = first eq "theta" ? "{/:Italic θ}" : first eq "phi" ? "{/:Italic φ}" : first eq "time" ? "{/:Italic t}" : first eq "rho" ? "{/:Italic ρ}" : "{/:Italic r}"
 # The first word of a table's heads, without its unit.
 first_of(file) = system("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); sub(/\\[.*/, \"\", $1); print $1; exit }'" . from(file))
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "defaults/fit_check.h"
 
+#include "defaults/fit_densities.h"
 #include "targets/target_sanity.h"
 #include "io/units_scale.h"
 #include "observe/kirkwood_buff_observable.h"
@@ -276,6 +277,7 @@ static enum status check_windows(const struct fit_file *fit, const char *file) {
 enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     const struct target_files *files = &fit->files;
     TRY(check_molecules(fit, file));
+    TRY(mf_fit_densities_check(fit, file));
     TRY(check_integrals(fit, file));
     TRY(check_intermolecular(fit, file));
     TRY(check_unknowns(fit, file));

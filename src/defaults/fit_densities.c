@@ -147,3 +147,28 @@ void mf_fit_densities_state(const struct fit_file *fit, struct inverse_problem *
                                 .group = t,
                                 .bins = {0, 2 * curve->x[0], curve->points}};
 }
+
+enum status mf_fit_densities_check(const struct fit_file *fit, const char *file) {
+    const struct inverse_method *method = fit->method;
+    const struct scene_many_body *many_body = &fit->scene.many_body;
+    const int t = find_term(many_body);
+    const bool finds = method->kind == INVERSE_INVERSION && method->knows_molecules &&
+                       !method->restricted;
+    if (t < 0)
+        return STATUS_OK;
+    if (!finds)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: method.name: \"%s\" does not find an \"energy\" that "
+                              "\"scene.many_body\" leaves out; \"auto\", \"imc\" and \"ibi\" do",
+                              file, method->name);
+    const double range = mf_rdf_bins_range(&fit->problem.targets.bins);
+    const double cutoff = weight_cutoff(&many_body->law->term[t].weight);
+    if (!fit->unknown[UNKNOWN_POTENTIAL].wanted || range >= (1 - rounding) * cutoff)
+        return STATUS_OK;
+    const double length = mf_units_factor(&fit->scene.units, "lambda");
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: target.rdf: it ends at %g, before the weight of "
+                          "\"scene.many_body.%s\" at %g; g(r) and the energy are told apart only "
+                          "where it reaches as far",
+                          file, length * range, many_body->law->term[t].name, length * cutoff);
+}

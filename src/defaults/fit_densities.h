@@ -9,6 +9,9 @@
 /// @param[in,out] fit  scene and targets have been read
 enum status mf_fit_densities_read(struct fit_file *fit, struct json_object *root) MUST_USE;
 
+/// Refuse what cannot find them. Fails: BAD_INPUT.
+enum status mf_fit_densities_check(const struct fit_file *fit, const char *file) MUST_USE;
+
 /// Give the target of a density this many bins, of which its own are the first, and measure it in
 /// them. What it has not seen has p = 0 and the error of its last bin. Fails: NO_MEMORY.
 enum status mf_fit_densities_widen(struct fit_file *fit, size_t bins) MUST_USE;

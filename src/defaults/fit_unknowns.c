@@ -3,6 +3,7 @@
 
 #include "base/names.h"
 #include "defaults/fit_base.h"
+#include "observe/weighted_density.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,10 +22,30 @@ static bool knows_all(const struct json_object *root, const struct json_object *
     return known;
 }
 
+/// Whether an energy of local densities is left out, to be found from its target.
+static bool finds_density(const struct json_object *root, const struct json_object *target) {
+    const char *name, *const key = mf_targets_name(mf_weighted_density_kind());
+    struct json_object own = *root; // looks, and asks for nothing
+    if (!mf_json_is_object(root, "scene") || !mf_json_is_object(target, key))
+        return false;
+    const struct json_object scene = mf_json_child(&own, "scene", false);
+    if (!mf_json_is_object(&scene, "many_body"))
+        return false;
+    struct json_object scene_own = scene;
+    const struct json_object all = mf_json_child(&scene_own, "many_body", false);
+    for (size_t n = 0; (name = mf_json_key(&all, n)); n++) {
+        struct json_object terms = all;
+        const struct json_object term = mf_json_child(&terms, name, false);
+        if (term.item && !mf_json_is_member(&term, "energy"))
+            return true;
+    }
+    return false;
+}
+
 /// Without "unknowns": what has a target is unknown, and g(r) always if nothing else is.
 static bool has_potential(struct json_object *root) {
     const struct json_object target = mf_json_child(root, "target", false);
-    bool groups = knows_all(root, &target);
+    bool groups = knows_all(root, &target) || finds_density(root, &target);
     for (int order = 0; order < BONDED_KINDS; order++)
         groups = groups || mf_json_is_object(&target, mf_bonded_distribution_of(order)->name);
     return !groups || mf_json_is_member(&target, mf_targets_name(TARGET_RDF));

@@ -23,7 +23,7 @@ static bool has_own(const struct inversion_state *state) {
 }
 
 static bool is_from_hnc(const struct inversion_state *state) {
-    return !has_own(state) && mf_inversion_knows_intramolecular(state) &&
+    return state->grid.pairs > 0 && !has_own(state) && mf_inversion_knows_intramolecular(state) &&
            state->parameters->start == INVERSION_FROM_HNC;
 }
 
@@ -138,9 +138,9 @@ enum status mf_inversion_start_of_molecules(struct inversion *inversion,
 /// rms of g* − 1.
 static double find_structure(const struct inversion_state *state) {
     double sum = 0;
-    for (size_t n = 0; n < state->bins; n++)
+    for (size_t n = 0; n < state->grid.pair_bins; n++)
         sum += pow(mf_inversion_target_g(state, n) - 1, 2);
-    return sqrt(sum / (double)state->bins);
+    return sqrt(sum / (double)state->grid.pair_bins);
 }
 
 bool mf_inversion_start_has_other(const struct inversion *inversion,

@@ -106,7 +106,9 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
         .target = problem->targets.target[mf_group_kind_target(unknown->order)].value +
                   unknown->first,
         .temperature = problem->scene.temperature,
-        .dimensions = problem->scene.box.dimensions};
+        .dimensions = problem->scene.box.dimensions,
+        .is_level = unknown->order == INVERSE_LOCAL_DENSITY &&
+                    problem->unknown[UNKNOWN_POTENTIAL].wanted};
     find_known(grid, problem);
     find_margins(grid);
     if (is_periodic(grid) &&

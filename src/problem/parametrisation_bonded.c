@@ -7,6 +7,7 @@
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <string.h>
 
 /// Sines and cosines of a dihedral, which goes round.
 static void fill_waves(const struct bonded_grid *grid, size_t count, double *basis) {
@@ -20,28 +21,50 @@ static void fill_waves(const struct bonded_grid *grid, size_t count, double *bas
 }
 
 /// B-splines from the first to the last known bin. The one that is left out at the end is the sum
-/// of the others but for a constant.
+/// of the others but for a constant; where the slope is left out, too, so is the first.
 static enum status fill_splines(const struct bonded_grid *grid, size_t count, double *basis) {
-    OWNED double *place = NULL;
+    const size_t left_out = grid->is_level, all = count + left_out;
+    OWNED double *place = NULL, *whole = NULL;
     TRY_ARRAY(place, grid->known);
+    TRY_ARRAY(whole, grid->known * all);
     for (size_t k = 0; k < grid->known; k++)
         place[k] = (double)k / (double)(grid->known - 1);
-    return mf_shape_basis(mf_shapes[INVERSE_CURVE_BSPLINE], count, place, grid->known, basis);
+    TRY(mf_shape_basis(mf_shapes[INVERSE_CURVE_BSPLINE], all, place, grid->known, whole));
+    for (size_t k = 0; k < grid->known; k++)
+        memcpy(basis + k * count, whole + k * all + left_out, count * sizeof *basis);
+    return STATUS_OK;
+}
+
+/// Take off a function its part along another, x, by the target: Σ p x y/Σ p x² of it.
+static void take_off(const struct bonded_grid *grid, size_t count, const double *x, double *y) {
+    double products = 0, squares = 0;
+    for (size_t k = 0; k < grid->known; k++) {
+        const double p = grid->target[grid->first + k];
+        products += p * x[k] * y[k * count];
+        squares += p * x[k] * x[k];
+    }
+    for (size_t k = 0; k < grid->known; k++)
+        y[k * count] -= products / squares * x[k];
 }
 
 enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size_t count,
                                             double *basis) {
-    const double whole = mf_bonded_grid_mean(grid) * (double)grid->known;
+    OWNED double *constant = NULL, *line = NULL;
+    TRY_ARRAY(constant, grid->known);
+    TRY_ARRAY(line, grid->known);
+    for (size_t k = 0; k < grid->known; k++) {
+        constant[k] = 1;
+        line[k] = (double)k;
+    }
+    take_off(grid, 1, constant, line);
     if (mf_group_kind_is_periodic(grid->unknown->order))
         fill_waves(grid, count, basis);
     else
         TRY(fill_splines(grid, count, basis));
     for (size_t n = 0; n < count; n++) {
-        double mean = 0;
-        for (size_t k = 0; k < grid->known; k++)
-            mean += grid->target[grid->first + k] / whole * basis[k * count + n];
-        for (size_t k = 0; k < grid->known; k++)
-            basis[k * count + n] -= mean;
+        take_off(grid, count, constant, basis + n);
+        if (grid->is_level)
+            take_off(grid, count, line, basis + n);
     }
     return STATUS_OK;
 }

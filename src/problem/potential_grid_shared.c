@@ -6,12 +6,12 @@
 
 #include <math.h>
 
-/// The group of local densities, or NULL.
+/// The group of local densities whose slope pairs have, or NULL.
 static const struct potential_group *find_density(const struct potential_grid *grid,
                                                   size_t *first) {
     *first = grid->pairs_known;
     for (size_t g = 0; g < grid->groups; *first += grid->group[g++].own.known)
-        if (grid->group[g].own.unknown->order == INVERSE_LOCAL_DENSITY)
+        if (grid->group[g].own.is_level)
             return &grid->group[g];
     return NULL;
 }
@@ -32,7 +32,7 @@ enum status mf_potential_grid_find_shared(struct potential_grid *grid,
                                           const struct inverse_problem *problem) {
     size_t first;
     const struct potential_group *group = find_density(grid, &first);
-    if (group == NULL || grid->pairs == 0)
+    if (group == NULL)
         return STATUS_OK;
     const struct bonded_grid *own = &group->own;
     const struct simulation_setup *scene = &problem->scene;

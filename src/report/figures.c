@@ -29,7 +29,7 @@ enum parts {
     NO_PARTS,
     PAIRS,          ///< in a mixture a pair type: a figure each
     PAIRS_TOGETHER, ///< the same, but one figure of all
-    GROUPS,         ///< of bonds, angles or dihedrals: a figure each
+    GROUPS,         ///< of bonds, angles, dihedrals or local densities: a figure each
 };
 
 struct figure {
@@ -47,7 +47,8 @@ static const struct figure figures[] = {
     {"intermolecular_rdf", "rdf", {"intermolecular_rdf.tsv"}, "target_error", PAIRS},
     {"intermolecular_rdf", "intermolecular_rdf", {"intermolecular_rdf.tsv"}, "g", PAIRS_TOGETHER},
     BONDED_LIST(DISTRIBUTION){"potential", "potential", {"potential.tsv"}, "phi", PAIRS},
-    BONDED_LIST(ENERGY){"omega", "omega", {"omega.tsv"}, "omega_error", NO_PARTS},
+    BONDED_LIST(ENERGY){"many_body", "bonded", {"many_body.tsv"}, "energy_error", GROUPS},
+    {"omega", "omega", {"omega.tsv"}, "omega_error", NO_PARTS},
     {"etd_cells", "etd_cells", {"etd_cells.tsv"}, "target", NO_PARTS},
     {"vacf", "vacf", {"vacf.tsv"}, "target", NO_PARTS},
     {"msd", "msd", {"msd.tsv"}, "target", NO_PARTS},
