@@ -104,6 +104,18 @@ void many_bodies_mixture(struct many_bodies *many, int dimensions, int64_t count
     act(many);
 }
 
+void many_bodies_crowd(struct many_body *law, double inner_cutoff, double cutoff, double c,
+                       double origin, const struct composition *composition) {
+    struct curve weight = make(&mf_weight_sanyal_shell, NULL);
+    struct curve energy = make(&mf_density_energy_polynomial, NULL);
+    *law = (struct many_body){.composition = *composition};
+    set(&weight, "inner_cutoff", inner_cutoff);
+    set(&weight, "cutoff", cutoff);
+    set(&energy, "c2", c);
+    set(&energy, "origin", origin);
+    add(law, "crowd", ~0U, ~0U, &weight, &energy);
+}
+
 void many_bodies_clear(struct many_bodies *many) {
     fluid_clear(&many->fluid);
     mf_many_body_clear(&many->law);

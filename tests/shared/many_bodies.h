@@ -24,4 +24,9 @@ void many_bodies_dpd(struct many_bodies *many, int dimensions, int64_t count);
 /// formula and a polynomial.
 void many_bodies_mixture(struct many_bodies *many, int dimensions, int64_t count);
 
+/// One term alone, of all beads: Sanyal and Shell's weight between these distances, and f = c (ρ −
+/// origin)². To be cleared with mf_many_body_clear.
+void many_bodies_crowd(struct many_body *law, double inner_cutoff, double cutoff, double c,
+                       double origin, const struct composition *composition);
+
 void many_bodies_clear(struct many_bodies *many);
