@@ -26,7 +26,7 @@ static bool may_be_in_basin(const struct inversion *inversion) {
     const struct inversion_progress *progress = &inversion->course.progress;
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
     return mf_inversion_is_near(inversion) ||
-           (!start && inversion_grid(inversion)->groups == 0 &&
+           (!start && !mf_potential_grid_has_terms(inversion_grid(inversion)) &&
             inversion->assessment.distance[TARGET_RDF].rms < again * progress->failed_error);
 }
 
@@ -36,7 +36,7 @@ static enum status careful_step(struct inversion_state *state, double *step) {
         mf_inversion_pressure_add_ramp(state, step);
         return STATUS_OK;
     }
-    if (mf_inversion_knows_intramolecular(state))
+    if (state->grid.groups == 0 && mf_inversion_knows_intramolecular(state))
         return mf_hnc_step(state, step);
     mf_ibi_step(state, step);
     return STATUS_OK;

@@ -16,15 +16,8 @@ enum status mf_inversion_low_rank_init(struct inversion_state *state) {
     return mf_inversion_basis_init(&state->low_rank, &state->grid, &size);
 }
 
-static bool has_molecules(const struct potential_grid *grid) {
-    for (size_t g = 0; g < grid->groups; g++)
-        if (grid->group[g].own.unknown->order != INVERSE_LOCAL_DENSITY)
-            return true;
-    return false;
-}
-
 bool mf_inversion_is_low_rank(const struct inversion *inversion) {
-    return has_molecules(inversion_grid(inversion)) && !mf_inversion_is_near(inversion);
+    return mf_potential_grid_has_terms(inversion_grid(inversion)) && !mf_inversion_is_near(inversion);
 }
 
 /// Work space of one step, in coefficients.

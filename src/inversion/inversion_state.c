@@ -116,8 +116,9 @@ enum status mf_inversion_state_init(struct inversion_state *state,
                               "with \"fitted\": \"no\" it is only compared");
     if (coefficients)
         return mf_inversion_basis_init(&state->basis, &state->grid, coefficients);
-    return state->grid.blocks > 1 || state->grid.groups > 0 ? mf_inversion_low_rank_init(state)
-                                                            : STATUS_OK;
+    return state->grid.pairs > 1 || mf_potential_grid_has_terms(&state->grid)
+               ? mf_inversion_low_rank_init(state)
+               : STATUS_OK;
 }
 
 static void clear_interaction(struct inversion_state *state) {

@@ -84,10 +84,6 @@ static void find_margins(struct bonded_grid *grid) {
         grid->points = grid->known + 1;
         return;
     }
-    if (grid->unknown->order == INVERSE_LOCAL_DENSITY) { // f goes on as a straight line
-        grid->points = grid->known;
-        return;
-    }
     const double low = bonded_bins_centre(bins, grid->first);
     const double high = bonded_bins_centre(bins, grid->first + grid->known - 1);
     while (grid->below < max && is_possible(grid, low - (double)(grid->below + 1) * bins->width))

@@ -185,6 +185,13 @@ void mf_potential_grid_clear(struct potential_grid *grid) {
     *grid = (struct potential_grid){0};
 }
 
+bool mf_potential_grid_has_terms(const struct potential_grid *grid) {
+    for (size_t g = 0; g < grid->groups; g++)
+        if (grid->group[g].own.unknown->order != INVERSE_LOCAL_DENSITY)
+            return true;
+    return false;
+}
+
 size_t mf_potential_grid_block(const struct potential_grid *grid, size_t pair) {
     return pair * (grid->bins + 1);
 }

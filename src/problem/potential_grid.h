@@ -51,6 +51,9 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
                                    const struct inverse_problem *problem) MUST_USE;
 void mf_potential_grid_clear(struct potential_grid *grid);
 
+/// Whether a group is one of terms of molecules, and not of local densities.
+bool mf_potential_grid_has_terms(const struct potential_grid *grid);
+
 /// First point of a block of pairs.
 size_t mf_potential_grid_block(const struct potential_grid *grid, size_t pair);
 

@@ -17,15 +17,14 @@ static const struct potential_group *find_density(const struct potential_grid *g
 }
 
 /// ⟨ρ⟩ and its variance by the target.
-static void find_moments(const struct potential_grid *grid, const struct bonded_grid *own,
-                         size_t point, double *mean, double *variance) {
+static void find_moments(const struct bonded_grid *own, const double *rho, double *mean,
+                         double *variance) {
     const double sum = mf_bonded_grid_mean(own) * (double)own->known;
     *mean = *variance = 0;
     for (size_t a = 0; a < own->known; a++)
-        *mean += own->target[own->first + a] / sum * grid->r[point + a];
+        *mean += own->target[own->first + a] / sum * rho[a];
     for (size_t a = 0; a < own->known; a++)
-        *variance +=
-            own->target[own->first + a] / sum * pow(grid->r[point + a] - *mean, 2);
+        *variance += own->target[own->first + a] / sum * pow(rho[a] - *mean, 2);
 }
 
 enum status mf_potential_grid_find_shared(struct potential_grid *grid,
@@ -38,10 +37,11 @@ enum status mf_potential_grid_find_shared(struct potential_grid *grid,
     const struct simulation_setup *scene = &problem->scene;
     const struct many_body *many_body = mf_many_body_find(scene->interaction, scene->interactions);
     const double sum = mf_bonded_grid_mean(own) * (double)own->known;
+    const double *rho = grid->r + group->point + own->below; // of the known bins
     double mean, variance;
     TRY_ARRAY(grid->shared.change, grid->known);
     TRY_ARRAY(grid->shared.weight, grid->known);
-    find_moments(grid, own, group->point, &mean, &variance);
+    find_moments(own, rho, &mean, &variance);
     for (size_t a = 0; a < grid->pairs_known; a++) {
         double w;
         mf_weight_evaluate(&many_body->term[own->unknown->group].weight,
@@ -49,7 +49,7 @@ enum status mf_potential_grid_find_shared(struct potential_grid *grid,
         grid->shared.change[a] = -2 * w;
     }
     for (size_t a = 0; a < own->known; a++) {
-        const double off = grid->r[group->point + a] - mean;
+        const double off = rho[a] - mean;
         grid->shared.change[first + a] = off;
         grid->shared.weight[first + a] = own->target[own->first + a] / sum * off / variance;
     }

@@ -70,7 +70,7 @@ static struct found read_found(const char *path) {
     assert_true(file && target);
     for (char line[256]; fgets(line, sizeof line, target);)
         bins += sscanf(line, "%lf %lf", &rho[bins], &p[bins]) == 2;
-    found.count = 0;
+    found = (struct found){.count = 0};
     for (char line[256]; fgets(line, sizeof line, file);) {
         const size_t n = found.count;
         if (sscanf(line, "%lf %lf %lf", &found.rho[n], &found.f[n], &found.error[n]) != 3)
