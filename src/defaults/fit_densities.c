@@ -138,22 +138,19 @@ enum status mf_fit_densities_read(struct fit_file *fit, struct json_object *root
 
 void mf_fit_densities_state(const struct fit_file *fit, struct inverse_problem *problem) {
     const int t = find_term(&fit->scene.many_body);
-    const struct target_curve *curve =
-        target_files_curve(&fit->files, mf_weighted_density_kind());
+    const struct target_curve *curve = target_files_curve(&fit->files, mf_weighted_density_kind());
     if (t < 0 || curve->points == 0)
         return;
-    problem->group[problem->bonded++] =
-        (struct bonded_unknown){.order = INVERSE_LOCAL_DENSITY,
-                                .group = t,
-                                .bins = {0, 2 * curve->x[0], curve->points}};
+    problem->group[problem->bonded++] = (struct bonded_unknown){
+        .order = INVERSE_LOCAL_DENSITY, .group = t, .bins = {0, 2 * curve->x[0], curve->points}};
 }
 
 enum status mf_fit_densities_check(const struct fit_file *fit, const char *file) {
     const struct inverse_method *method = fit->method;
     const struct scene_many_body *many_body = &fit->scene.many_body;
     const int t = find_term(many_body);
-    const bool finds = method->kind == INVERSE_INVERSION && method->knows_molecules &&
-                       !method->restricted;
+    const bool finds =
+        method->kind == INVERSE_INVERSION && method->knows_molecules && !method->restricted;
     if (t < 0)
         return STATUS_OK;
     if (!finds)

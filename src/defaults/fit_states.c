@@ -231,17 +231,16 @@ static enum status refuse_bins(const struct fit_file *fit, const struct fit_file
                                const char *file) {
     const struct bonded_unknown *unknown = &fit->problem.group[g];
     const struct bonded_bins *first = &unknown->bins, *second = &other->problem.group[g].bins;
-    const double unit = mf_group_kind_is_length(unknown->order)
-                            ? mf_units_factor(&fit->scene.units, "lambda")
-                            : 1;
+    const double unit =
+        mf_group_kind_is_length(unknown->order) ? mf_units_factor(&fit->scene.units, "lambda") : 1;
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: states.%s: target.%s.%s has %zu bins of %.5g from %.5g, that of \"%s\" has %zu of "
         "%.5g from %.5g: they need not begin or end together, but must be as wide and have common "
         "edges; measure both with the same bins",
-        file, other->name, mf_targets_name(mf_group_kind_target(unknown->order)),
-        name_of(fit, g), second->count, unit * second->width, unit * second->low, fit->name,
-        first->count, unit * first->width, unit * first->low);
+        file, other->name, mf_targets_name(mf_group_kind_target(unknown->order)), name_of(fit, g),
+        second->count, unit * second->width, unit * second->low, fit->name, first->count,
+        unit * first->width, unit * first->low);
 }
 
 /// The bins that the states have together, with the width of the first state's.

@@ -17,7 +17,8 @@ enum status mf_inversion_low_rank_init(struct inversion_state *state) {
 }
 
 bool mf_inversion_is_low_rank(const struct inversion *inversion) {
-    return mf_potential_grid_has_terms(inversion_grid(inversion)) && !mf_inversion_is_near(inversion);
+    return mf_potential_grid_has_terms(inversion_grid(inversion)) &&
+           !mf_inversion_is_near(inversion);
 }
 
 /// Work space of one step, in coefficients.

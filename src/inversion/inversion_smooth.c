@@ -113,8 +113,8 @@ static void take_target(const struct inversion_state *state, const struct group 
         const double counts = state->target.counts[bin];
         const double min = state->target.min[bin] * state->target.ideal[bin];
         const double error = fmax(state->target.error[bin], exact * state->target.ideal[bin]);
-        const double jacobian = mf_group_kind_jacobian(
-            own->unknown->order, own->dimensions, &own->unknown->bins, own->first + a);
+        const double jacobian = mf_group_kind_jacobian(own->unknown->order, own->dimensions,
+                                                       &own->unknown->bins, own->first + a);
         curve[a] = -temperature * log(fmax(counts, min) / jacobian);
         information[a] = pow(counts / (error * temperature), 2);
     }

@@ -94,8 +94,7 @@ static enum status write_group(const struct inversion_state *state, size_t g,
     for (size_t k = 0; k < unknown->bins.count; k++)
         column[0][k] = bonded_bins_centre(&unknown->bins, k);
     fill(state, group->bin, unknown->bins.count, column);
-    snprintf(file, sizeof file, "now_%s_%s.tsv", about->name,
-             mf_group_kind_group(scene, unknown));
+    snprintf(file, sizeof file, "now_%s_%s.tsv", about->name, mf_group_kind_group(scene, unknown));
     folder->file(folder->context, file, path);
     return mf_data_table_write_in(path, folder->units, NULL, columns, COLUMNS, unknown->bins.count);
 }

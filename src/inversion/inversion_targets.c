@@ -100,16 +100,14 @@ static void enter_group(struct inversion_state *state, size_t g) {
     static const double narrow = 0.1;
     const struct bonded_grid *own = &state->grid.group[g].own;
     const struct bonded_unknown *unknown = own->unknown;
-    struct inversion_section *section =
-        add_section(state, mf_group_kind_target(unknown->order));
+    struct inversion_section *section = add_section(state, mf_group_kind_target(unknown->order));
     section->bins = unknown->bins.count;
     section->known_count = own->known;
     section->peak = peak_of(own);
-    state->groups[g] = (struct sampler_group){
-        unknown->order, unknown->group, unknown->bins,
-        unknown->order == INVERSE_LOCAL_DENSITY
-            ? mf_group_kind_density(&state->problem->targets)
-            : NULL};
+    state->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins,
+                                              unknown->order == INVERSE_LOCAL_DENSITY
+                                                  ? mf_group_kind_density(&state->problem->targets)
+                                                  : NULL};
     state->target.shape[state->grid.pairs + g] =
         (struct imc_shape){.bend = fmax(1, narrow * (double)own->known),
                            .periodic = mf_group_kind_is_periodic(unknown->order)};

@@ -61,7 +61,10 @@ static enum status carry_out(struct session *session, struct live_order *order, 
     mf_live_watch_end(&session->watch);
     mf_live_view_write_tables(view);
     mf_live_control_reset(&view->control);
-    mf_live_view_set_phase(view, *stopped ? LIVE_STOPPED : ran ? LIVE_ENDED : LIVE_REFUSED,
+    mf_live_view_set_phase(view,
+                           *stopped ? LIVE_STOPPED
+                           : ran    ? LIVE_ENDED
+                                    : LIVE_REFUSED,
                            message);
     return status;
 }

@@ -22,5 +22,4 @@ enum status mf_density_list_init(struct density_list *list,
 void mf_density_list_clear(struct density_list *list);
 
 /// Fill in what a configuration has. Fails: NO_MEMORY. Tested: test_weighted_density (unit, cli).
-enum status mf_density_list_find(struct density_list *list,
-                                 const struct particles *from) MUST_USE;
+enum status mf_density_list_find(struct density_list *list, const struct particles *from) MUST_USE;

@@ -99,12 +99,12 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
                *name = mf_group_kind_group(&problem->scene, unknown);
     *grid = (struct bonded_grid){
         .unknown = unknown,
-        .target = problem->targets.target[mf_group_kind_target(unknown->order)].value +
-                  unknown->first,
+        .target =
+            problem->targets.target[mf_group_kind_target(unknown->order)].value + unknown->first,
         .temperature = problem->scene.temperature,
         .dimensions = problem->scene.box.dimensions,
-        .is_level = unknown->order == INVERSE_LOCAL_DENSITY &&
-                    problem->unknown[UNKNOWN_POTENTIAL].wanted};
+        .is_level =
+            unknown->order == INVERSE_LOCAL_DENSITY && problem->unknown[UNKNOWN_POTENTIAL].wanted};
     find_known(grid, problem);
     find_margins(grid);
     if (is_periodic(grid) &&
@@ -218,8 +218,9 @@ void mf_bonded_grid_start(const struct bonded_grid *grid, double *energy) {
     for (size_t k = 0; k < own.known; k++) {
         const size_t bin = own.first + k;
         const double p = fmax(grid->target[bin], seen);
-        known[k] = -grid->temperature *
-                   log(p / mf_group_kind_jacobian(unknown->order, grid->dimensions, &unknown->bins, bin));
+        known[k] =
+            -grid->temperature *
+            log(p / mf_group_kind_jacobian(unknown->order, grid->dimensions, &unknown->bins, bin));
     }
     mf_bonded_grid_level(&own, energy);
     mf_bonded_grid_complete(&own, energy);

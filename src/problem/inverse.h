@@ -145,8 +145,7 @@ struct bonded_unknown {
 };
 
 enum {
-    INVERSE_MAX_BONDED =
-        (int)BONDED_KINDS * (int)MOLECULES_MAX_GROUPS + (int)MANY_BODY_MAX_TERMS
+    INVERSE_MAX_BONDED = (int)BONDED_KINDS * (int)MOLECULES_MAX_GROUPS + (int)MANY_BODY_MAX_TERMS
 };
 
 enum { INVERSE_MAX_STATES = 16 };

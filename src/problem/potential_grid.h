@@ -60,9 +60,9 @@ size_t mf_potential_grid_block(const struct potential_grid *grid, size_t pair);
 /// Whether a point of pairs is in the core of its block.
 bool mf_potential_grid_in_core(const struct potential_grid *grid, size_t point);
 
-/// Complete phi, shape [points], from its known values, less what is shared: core below, 0 at the cutoff; U with a least
-/// value of 0, and beyond what the target knows. Or, with the constants of U left as they are,
-/// pairs alone, shape [pair_points], or groups, shape [points − pair_points].
+/// Complete phi, shape [points], from its known values, less what is shared: core below, 0 at the
+/// cutoff; U with a least value of 0, and beyond what the target knows. Or, with the constants of U
+/// left as they are, pairs alone, shape [pair_points], or groups, shape [points − pair_points].
 void mf_potential_grid_complete(const struct potential_grid *grid, double *phi);
 void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double *phi);
 void mf_potential_grid_complete_groups(const struct potential_grid *grid, double *energy);

@@ -207,8 +207,8 @@ static void find_worst(const struct inverse_problem *problem, struct verificatio
                                                       verification->observed.error[integrals]);
     for (size_t g = 0; g < problem->bonded; g++) {
         const struct bonded_unknown *group = &problem->group[g];
-        add_part(problem, mf_group_kind_target(group->order), group->first,
-                 group->bins.count, verification);
+        add_part(problem, mf_group_kind_target(group->order), group->first, group->bins.count,
+                 verification);
     }
     const size_t bins = problem->compared.bins.count;
     for (size_t first = 0; first < problem->compared.target[TARGET_RDF].count; first += bins)

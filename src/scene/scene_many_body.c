@@ -155,8 +155,7 @@ bool mf_scene_many_body_remark(const struct scene_many_body *many_body, const vo
 }
 
 static enum status read_term(struct scene_many_body *many_body, struct json_object *object,
-                             const char *name, const struct simulation_setup *setup,
-                             bool fitted) {
+                             const char *name, const struct simulation_setup *setup, bool fitted) {
     struct many_body *law = many_body->law;
     const int t = law->terms, dimensions = setup->box.dimensions;
     if (t == MANY_BODY_MAX_TERMS || !is_plain(name)) {

@@ -23,8 +23,7 @@ static struct run_program_result result;
 #define CUTOFFS "\"inner_cutoff\": 0.5, \"cutoff\": 1.2"
 #define DENSITY(energy)                                                                            \
     "\"many_body\": {\"crowd\": {\"weight\": {\"law\": \"sanyal-shell\", " CUTOFFS "}" energy "}}"
-#define TRUTH                                                                                      \
-    ", \"energy\": {\"law\": \"polynomial\", \"c1\": 0.5, \"c2\": 1, \"origin\": 2.4}"
+#define TRUTH ", \"energy\": {\"law\": \"polynomial\", \"c1\": 0.5, \"c2\": 1, \"origin\": 2.4}"
 #define MEASURE "\"measure\": {\"equilibration\": 2000, \"samples\": 3000, \"every\": 10},\n"
 #define OBSERVABLES                                                                                \
     "\"rdf\": {\"range\": 1.5, \"bins\": 30},\n"                                                   \
@@ -35,8 +34,7 @@ static const char twin[] =
     "{\"seed\": 51, " FLUID PAIRS DENSITY(TRUTH) ",\n" MEASURE OBSERVABLES "}\n";
 
 #define RDF "\"rdf\": {\"file\": \"target/rdf.tsv\"}, "
-#define P_OF_RHO                                                                                   \
-    "\"weighted_density\": {" CUTOFFS ", \"file\": \"target/weighted_density.tsv\"}"
+#define P_OF_RHO "\"weighted_density\": {" CUTOFFS ", \"file\": \"target/weighted_density.tsv\"}"
 #define IMC "\"method\": {\"name\": \"imc\", \"precision\": 0.006}"
 #define VERIFICATION                                                                               \
     "\"verification\": {\"replicas\": 2, \"equilibration\": 500, \"samples\": 200, \"every\": 10}"
@@ -49,7 +47,7 @@ static void write_fit(struct temporary_folder *folder, const char *from, const c
     snprintf(text, sizeof text,
              "{\"seed\": 3, \"target\": {" RDF P_OF_RHO ",\n\"pressure\": {\"value\": %.8g, "
              "\"error\": %.8g}},\n\"scene\": {" FLUID DENSITY("") "},\n" IMC ", " VERIFICATION
-             "}\n",
+                                                                  "}\n",
              results_number("target/summary.json", "pressure"),
              results_number("target/summary.json", "pressure_error"));
     small_inputs_write(folder, "run.json", text, from, to);
@@ -145,12 +143,13 @@ static void test_an_energy_is_found_beside_the_potential(void **state) {
     run_program_in_pieces(0, (const char *const[]){"fit", "run.json", "-o", "pieces", NULL});
     results_assert_same("out", "pieces", tables);
 
-    small_inputs_write(*state, "result.json",
-                       "{\"seed\": 8, " FLUID
-                       "\"conservative\": {\"law\": \"table\", \"file\": \"out/potential.tsv\"},\n" DENSITY(
-                           ", \"energy\": {\"law\": \"table\", \"file\": "
-                           "\"out/many_body_crowd.tsv\"}") ",\n" MEASURE OBSERVABLES "}\n",
-                       NULL, NULL);
+    small_inputs_write(
+        *state, "result.json",
+        "{\"seed\": 8, " FLUID
+        "\"conservative\": {\"law\": \"table\", \"file\": \"out/potential.tsv\"},\n" DENSITY(
+            ", \"energy\": {\"law\": \"table\", \"file\": "
+            "\"out/many_body_crowd.tsv\"}") ",\n" MEASURE OBSERVABLES "}\n",
+        NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "result.json", "-o", "simulated", "--quiet");
     run_program_assert_code(&result, 0);
     assert_close(results_number("simulated/summary.json", "weighted_density_variance"),
@@ -163,7 +162,8 @@ static void test_an_energy_is_found_beside_the_potential(void **state) {
 static void test_an_energy_is_found_alone(void **state) {
     write_fit(*state, "\"scene\": {", "\"scene\": {" PAIRS);
     small_inputs_change(*state, "run.json", RDF, "");
-    small_inputs_change(*state, "run.json", "\"pressure\": {", "\"pressure\": {\"fitted\": \"no\", ");
+    small_inputs_change(*state, "run.json", "\"pressure\": {",
+                        "\"pressure\": {\"fitted\": \"no\", ");
     run_fit("out");
     assert_found("out/many_body_crowd.tsv", false, 0.05);
 }

@@ -64,8 +64,8 @@ static void measure(double c, bool found, struct inversion *inversion) {
         problem.targets.target[kind] = (struct target){RHO_BINS, p, no_errors, .x = rho};
         problem.targets.settings[mf_observable_kind(kind).place] = &weight;
         problem.unknown[UNKNOWN_BONDED].wanted = true;
-        problem.group[problem.bonded++] = (struct bonded_unknown){
-            .order = INVERSE_LOCAL_DENSITY, .bins = {0, rho_width, RHO_BINS}};
+        problem.group[problem.bonded++] = (struct bonded_unknown){.order = INVERSE_LOCAL_DENSITY,
+                                                                  .bins = {0, rho_width, RHO_BINS}};
     }
     struct inverse_step step;
     *inversion = (struct inversion){0};
@@ -94,8 +94,8 @@ static void test_slope_of_the_pressure_is_that_of_simulations(void **state) {
     const struct inversion_state *at = inversion.state;
     double predicted = 0;
     for (size_t b = at->grid.pairs_known; b < at->grid.known; b++)
-        predicted += 2 * at->pressure.slope[b] *
-                     energy_at(amount, at->grid.r[at->grid.known_point[b]]);
+        predicted +=
+            2 * at->pressure.slope[b] * energy_at(amount, at->grid.r[at->grid.known_point[b]]);
     const double found = pressure_with(amount) - pressure_with(-amount);
     print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at->pressure.value,
                   at->pressure.error, predicted, found);
