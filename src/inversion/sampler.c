@@ -37,6 +37,13 @@ static enum status begin_waves(struct sampler *sampler, const struct sampler_sys
     return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "target.kirkwood_buff") : status;
 }
 
+static enum status begin_densities(struct sampler *sampler, const struct sampler_system *system,
+                                   const struct weighted_density_settings *settings) {
+    TRY_ARRAY(sampler->densities, 1);
+    return mf_density_list_init(sampler->densities, settings, system->box,
+                                (size_t)mf_composition_particles(system->composition));
+}
+
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
                             const struct sampler_system *system) {
     enum status status = STATUS_OK;
@@ -55,8 +62,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     CHECK(begin_waves(sampler, system));
     for (size_t k = 0; k < system->groups; k++)
         if (system->group[k].density)
-            CHECK(mf_density_list_init(&sampler->densities, system->group[k].density, system->box,
-                                       (size_t)mf_composition_particles(system->composition)));
+            CHECK(begin_densities(sampler, system, system->group[k].density));
     if (system->molecules)
         CHECK(mf_whole_molecules_init(&sampler->whole, &system->molecules->topology));
     if (sampler->kind == SAMPLER_DYNAMICS) {
@@ -85,7 +91,9 @@ void mf_sampler_clear(struct sampler *sampler) {
     mf_hybrid_clear(&sampler->hybrid);
     mf_kirkwood_buff_waves_clear(&sampler->kirkwood_buff);
     mf_whole_molecules_clear(&sampler->whole);
-    mf_density_list_clear(&sampler->densities);
+    if (sampler->densities)
+        mf_density_list_clear(sampler->densities);
+    mf_memory_free(sampler->densities);
     mf_memory_free(sampler->histogram.counts);
     *sampler = (struct sampler){0};
 }
@@ -130,7 +138,7 @@ static double *count_groups(const struct sampler *sampler, double *sample) {
         const struct sampler_group *group = &sampler->group[k];
         memset(sample, 0, group->bins.count * sizeof *sample);
         if (group->density)
-            count_densities(&sampler->densities, &group->bins, NULL, sample);
+            count_densities(sampler->densities, &group->bins, NULL, sample);
         else
             mf_bonded_distribution_count(sampler->molecules, group->order, group->group,
                                          &group->bins, particles, sample);
@@ -146,7 +154,7 @@ static void sum_stresses(const struct sampler *sampler, double *sample) {
         if (group->density == NULL)
             continue;
         memset(sample, 0, group->bins.count * sizeof *sample);
-        count_densities(&sampler->densities, &group->bins, sampler->densities.stresses, sample);
+        count_densities(sampler->densities, &group->bins, sampler->densities->stresses, sample);
         sample += group->bins.count;
     }
 }
@@ -191,8 +199,8 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     }
     for (size_t a = 0; a < bins; a++)
         sample[a] = counts[a];
-    if (sampler->densities.values)
-        TRY(mf_density_list_find(&sampler->densities, particles_of(sampler)));
+    if (sampler->densities)
+        TRY(mf_density_list_find(sampler->densities, particles_of(sampler)));
     double *sum = count_groups(sampler, sample + bins);
     sum[SAMPLER_VIRIAL] = sums.virial;
     sum[SAMPLER_ENERGY] = sums.energy;

@@ -40,8 +40,8 @@ struct sampler {
     struct pair_histogram histogram; ///< of the chain's configuration
     bool waves;                      ///< the integrals are asked for
     struct kirkwood_buff_waves kirkwood_buff;
-    struct whole_molecules whole;  ///< of molecules, for their sizes
-    struct density_list densities; ///< of a group of local densities
+    struct whole_molecules whole;   ///< of molecules, for their sizes
+    struct density_list *densities; ///< of a group of local densities; NULL: there is none
 };
 
 /// What is to be sampled. Borrowed: the potential, which may be exchanged before mf_sampler_begin,
