@@ -186,6 +186,17 @@ static struct verify_agreement assess(const struct targets *targets,
     return agreement;
 }
 
+/// Of a number, whose noise is that of the fit's samples, too.
+static void assess_number(const struct targets *targets, int kind, const struct observed *observed,
+                          double share, struct verify_agreement *agreement) {
+    const struct target *const target = &targets->target[kind];
+    if (target->count != 1 || !isfinite(observed->value[kind][0]))
+        return;
+    agreement->distance = mf_targets_distance(target, observed->value[kind], observed->error[kind]);
+    agreement->distance.noise = hypot(known_or_0(target->error[0]),
+                                      sqrt(1 + share) * known_or_0(observed->error[kind][0]));
+}
+
 void mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
                      const struct observed *observed, double noise,
                      struct verify_agreement *agreement) {
@@ -198,4 +209,5 @@ void mf_verify_agree(const struct targets *targets, const struct verify_sections
         if (worst->probable == 0 || own.misfit * worst->probable > worst->misfit * own.probable)
             *worst = own;
     }
+    assess_number(targets, TARGET_PRESSURE, observed, share, &agreement[TARGET_PRESSURE]);
 }

@@ -122,7 +122,7 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
     const struct target_distance *rdf = &agreement[TARGET_RDF].distance;
     const bool several = fitted->bins.count < fitted->target[TARGET_RDF].count;
     const struct thermodynamics_summary *found = &verification->thermodynamics;
-    const struct target_distance *pressure = &verification->distance[TARGET_PRESSURE];
+    const struct target_distance *pressure = &agreement[TARGET_PRESSURE].distance;
     if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {
         char cause[FIT_STEP_TEXT_SIZE];
         if (mf_fit_step_shifts_pressure(verification))

@@ -77,6 +77,26 @@ static void test_agreement_knows_the_noise_of_the_fit(void **state) {
     assert_true(holds(&of, 0.003));
 }
 
+/// A fit whose samples know the pressure four times worse than its verification: so far may the
+/// result be from what is asked for.
+static void test_agreement_knows_the_noise_of_the_fit_in_the_pressure(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    double wanted = 3, target_error = 3, value = 3.1, error = 4;
+    (void)state;
+    make(&of, 3, 4, 50);
+    of.targets.target[TARGET_PRESSURE] =
+        (struct target){.count = 1, .value = &wanted, .error = &target_error};
+    of.observed.value[TARGET_PRESSURE] = &value;
+    of.observed.error[TARGET_PRESSURE] = &error;
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_close(agreement[TARGET_PRESSURE].distance.rms, 0.1, 1e-12);
+    assert_close(agreement[TARGET_PRESSURE].distance.noise, 5, 1e-12);
+    // 4 times 4 of the samples beside the target's 3, in units of that.
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, hypot(3, 16) / 3, agreement);
+    assert_close(agreement[TARGET_PRESSURE].distance.noise, sqrt(9 + 17 * 16), 1e-6);
+}
+
 /// Bins that are sums of three neighbours out of white noise: 2 of 2000 such curves are told, while
 /// 25 would be if all bins were independent.
 static void test_agreement_is_wrong_in_one_of_a_thousand(void **state) {
@@ -193,6 +213,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_agreement_depends_on_how_many_bins_are_independent),
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit),
+        cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit_in_the_pressure),
         cmocka_unit_test(test_agreement_is_wrong_in_one_of_a_thousand),
         cmocka_unit_test(test_agreement_takes_the_error_of_the_counts_that_are_expected),
         cmocka_unit_test(test_agreement_knows_that_the_factor_of_a_target_is_uncertain),

@@ -34,6 +34,7 @@ static bool contradicts(const struct verification *verification, const struct ta
         agreement[kind] = (struct verify_agreement){
             *worst, worst->noise > 0 ? pow(worst->rms / worst->noise, 2) : 0, 9};
     }
+    agreement[TARGET_PRESSURE].distance = verification->distance[TARGET_PRESSURE];
     return mf_fit_verification_contradicts(verification, agreement, fitted, 1.5, 3, NULL, reason);
 }
 
