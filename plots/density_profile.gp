@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Density of each type along an axis of the box, with its 95 % band; with masses that of all types
-# together in a panel below.
+# together in a panel below, or of one type on a second axis.
 # Reads density_profile.tsv: x, y or z; density and error of each type; mass densities and errors.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
@@ -21,10 +21,18 @@ do for [k = 1:words(drawn)] {
     highest = high(highest, Y_max)
 }
 if (mass) { stats file using mass name "M" nooutput }
+below = mass && words(drawn) > 1
 
 do for [kind in kinds] {
-    eval open(kind, "density_profile", 720, mass ? 640 : 440)
-    if (mass) { set multiplot layout 2, 1; set lmargin 10 }
+    eval open(kind, "density_profile", 720, below ? 640 : 440)
+    if (below) { set multiplot layout 2, 1; set lmargin 10 }
+    if (mass && !below) {
+        set border 11 linewidth 0.8 linecolor rgb ink
+        set ytics nomirror
+        set y2range [0:1.1 * end_of(M_max)]
+        set y2tics
+        set y2label "mass density / (g/cm³)"
+    }
     set xrange [0:X_max + X_min]
     set yrange [0:1.1 * end_of(highest)]
     set xlabel per_unit("{/:Italic " . axis . "}", file, 1)
@@ -34,7 +42,7 @@ do for [kind in kinds] {
             with filledcurves @band linecolor rgb colour_of(k - 1), \
         for [k = 1:words(drawn)] file using 1:int(word(drawn, k)) with lines \
             title name_of(k) linewidth 2.2 linecolor rgb colour_of(k - 1)
-    if (mass) {
+    if (below) {
         set yrange [0:1.1 * end_of(M_max)]
         set ylabel "mass density / (g/cm³)"
         unset key

@@ -14,7 +14,7 @@ do for [kind in kinds] {
     eval open(kind, "local_density", 720, 440)
     set xrange [0:end_of(X_max)]
     set yrange [0:end_of(Y_max)]
-    set xlabel packing > 0 ? "packing fraction of a cell" : axis_of("local_density.tsv", "density", "density of a cell", "density of a cell / {/:Italic λ}^{-d}")
+    set xlabel packing > 0 ? "packing fraction of a cell" : axis_of("local_density.tsv", "density", "density of a cell", sprintf("density of a cell / {/:Italic λ}^{-%d}", dimensions))
     set ylabel "share of cells"
     plot table using x:3 with filledcurves y1=0 @band linecolor rgb blue, \
         "" using x:3 with lines linewidth 2.2 linecolor rgb blue

@@ -14,7 +14,7 @@ do for [kind in kinds] {
     set xrange [X_min:X_max]
     set yrange [0:end_of(Y_max)]
     set xlabel axis_of(table, first, "{/:Italic " . first . "}", "{/:Italic " . first . "} / {/:Italic λ}")
-    set ylabel axis_of(table, "density", "density", "density / {/:Italic λ}^{-d}")
+    set ylabel axis_of(table, "density", "density", sprintf("density / {/:Italic λ}^{-%d}", dimensions))
     set key right top vertical
     plot table using 1:(band_low(2, 3)):(band_high(2, 3)) notitle \
             with filledcurves @band linecolor rgb blue, \

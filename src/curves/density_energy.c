@@ -319,6 +319,13 @@ void mf_density_energy_clear(struct density_energy *energy) {
     *energy = (struct density_energy){0};
 }
 
+bool mf_density_energy_is_zero(const struct density_energy *energy) {
+    bool zero = !energy->tabulated;
+    for (int n = 0; n < DENSITY_ENERGY_TERMS; n++)
+        zero = zero && energy->term[n] == 0;
+    return zero;
+}
+
 double mf_density_energy_value(const struct density_energy *energy, double density, double *slope) {
     double value;
     if (!energy->tabulated)

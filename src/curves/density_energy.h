@@ -53,6 +53,9 @@ void mf_density_energy_clear(struct density_energy *energy);
 /// f(ρ) [k_B T_0], and its slope. Threads: any number at once.
 double mf_density_energy_value(const struct density_energy *energy, double density, double *slope);
 
+/// Whether it is a polynomial without any coefficient, which a fit may begin with.
+bool mf_density_energy_is_zero(const struct density_energy *energy);
+
 /// Points of a curve of the law "table", in reduced units. Fails: as mf_sampled_set_points.
 enum status mf_density_energy_set_points(struct curve *curve, const double *density,
                                          const double *energy, size_t count) MUST_USE;

@@ -160,6 +160,7 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
     fprintf(stream,
             "%sstructure  phi as tables: g(r), energy and pressure are those of the result\n",
             prefix);
+    mf_export_densities_print(&job->densities, job->model, prefix, stream);
     print_friction(job, prefix, stream);
     if (job->measured)
         print_measured(job, prefix, stream);

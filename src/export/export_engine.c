@@ -115,6 +115,11 @@ static enum status check(const struct export_job *job, bool bands) {
                               "%s: cannot be exported: what is written for %s is of single beads, "
                               "and there are molecules",
                               model->folder, engine->title);
+    if (mf_export_densities_of(model) && !engine->many_body)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: cannot be exported: what is written for %s has no energies of "
+                              "local densities (\"many_body\"); LAMMPS has them",
+                              model->folder, engine->title);
     TRY(check_pair_names(job));
     return job->projected ? check_friction(job) : STATUS_OK;
 }
@@ -195,6 +200,12 @@ static void print_readme(const struct export_job *job, FILE *stream) {
                 "between the rows they are\nwithin %.2g k_B T and %.2g of the largest slope.\n",
                 job->bonded.tables, job->bonded.rows, job->bonded.energy_error,
                 job->bonded.slope_error);
+    if (job->densities.terms > 0)
+        fprintf(stream,
+                "Of the tables of \"many_body\" the spline that %s lays through the rows is within "
+                "%.2g k_B T of f and within %.2g\nof its largest slope at densities that the start "
+                "has, for all densities up to the ends said above.\n",
+                job->engine->title, job->densities.error.phi, job->densities.error.force);
     if (job->grids.curves > 1)
         fprintf(stream, "\n_lower and _upper are the potential minus and plus one standard error "
                         "at each r. Errors at\ndifferent r are correlated; the two are a band, not "
@@ -278,6 +289,7 @@ static enum status run(struct export_job *job, const struct export_request *requ
     TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, request->bands,
                              job->engine->one_cutoff ? model->setup.potential->cutoff : 0));
     CHECK(mf_export_bonded_make(&job->bonded, model, job->engine->has_law));
+    CHECK(mf_export_densities_make(&job->densities, model));
     if (job->engine->check)
         CHECK(job->engine->check(job));
     CHECK(open_folder(&own, job, request->force));
@@ -288,6 +300,7 @@ static enum status run(struct export_job *job, const struct export_request *requ
 done:
     mf_tracked_files_close(&own);
     mf_export_grids_clear(&job->grids);
+    mf_export_densities_clear(&job->densities);
     mf_export_bonded_clear(&job->bonded);
     return status;
 }

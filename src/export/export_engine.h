@@ -6,6 +6,7 @@
 #pragma once
 
 #include "export/export_bonded.h"
+#include "export/export_density.h"
 #include "export/export_dynamics.h"
 #include "export/export_grid.h"
 #include "export/export_power.h"
@@ -34,6 +35,7 @@ struct export_job {
     char unmeasured[256];                             ///< or why it was not; ""
     double time_step;                                 ///< for this engine [τ]
     struct export_bonded bonded;                      ///< tables of laws that it has not
+    struct export_densities densities;                ///< tables of "many_body"
     int exclude; ///< of all molecules, for engines that have one number for all
 };
 
@@ -68,6 +70,7 @@ struct export_engine {
     void (*pair_name)(const char *a, const char *b, char name[EXPORT_PAIR_NAME_SIZE]);
     bool flat;                                    ///< also in two dimensions
     bool molecules;                               ///< bonds, angles and dihedrals are written, too
+    bool many_body;                               ///< energies of local densities, likewise
     enum status (*check)(struct export_job *job); ///< before anything is written; NULL: nothing
     enum status (*write)(const struct export_job *job);
     /// What a person should know of the thermostat, for the README.

@@ -2,6 +2,7 @@
 //
 // LAMMPS: pair_style table linear reads the rows as they are if its N is that of the file and the
 // rows are RSQ. Friction by dpd/tstat and dpd/ext/tstat, or by mesofit/table (share/lammps).
+#include "export/export_lammps_density.h"
 #include "export/export_lammps_molecules.h"
 #include "report/program.h"
 
@@ -144,9 +145,10 @@ static void print_power(const struct export_job *job, FILE *stream) {
     const double temperature = job->model->setup.temperature * job->units.temperature;
     fprintf(stream,
             " &\nelif \"${friction} == dpd\" &\n  \"pair_style hybrid/overlay table linear %zu "
-            "%s %.12g %.12g %.12g ${seed}\"",
+            "%s %.12g %.12g %.12g ${seed}",
             job->grids.grid[0][0].rows, linear ? "dpd/tstat" : "dpd/ext/tstat", temperature,
             temperature, job->model->setup.omega->cutoff * job->units.length);
+    mf_export_lammps_density_styles(job, stream);
     for (int pair = 0; pair < job->grids.pairs; pair++) {
         const struct export_power *power = &job->power[pair];
         const double gamma =
@@ -166,39 +168,45 @@ static void print_power(const struct export_job *job, FILE *stream) {
             fprintf(stream, " dpd/ext/tstat %.12g 0 %.12g 1", gamma, power->exponent);
         fprintf(stream, " %.12g\"", power->cutoff * job->units.length);
     }
+    mf_export_lammps_density_coefficients(job, stream);
 }
 
 /// Potential and friction weight as they are, by the pair style of our own.
 static void print_exact(const struct export_job *job, FILE *stream) {
     fprintf(stream,
-            " &\nelif \"${friction} == exact\" &\n  \"pair_style mesofit/table %.12g ${seed}\"",
+            " &\nelif \"${friction} == exact\" &\n  \"pair_style %smesofit/table %.12g ${seed}",
+            mf_export_lammps_overlays(job) ? "hybrid/overlay " : "",
             job->model->setup.temperature * job->units.temperature);
+    mf_export_lammps_density_styles(job, stream);
     for (int pair = 0; pair < job->grids.pairs; pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         int type[2];
         mf_export_model_pair(job->model, pair, type, name);
         fprintf(stream, " &\n  \"pair_coeff ");
         print_types(job, pair, stream);
-        fprintf(stream, " ");
+        fprintf(stream, mf_export_lammps_overlays(job) ? " mesofit/table " : " ");
         print_names(job, pair, stream);
         if (table_cutoff(job->model->setup.omega, pair) > 0)
             fprintf(stream, " OMEGA_%s", name);
         fprintf(stream, "\"");
     }
+    mf_export_lammps_density_coefficients(job, stream);
 }
 
 /// A bath for each particle, which keeps g(r) and not the motion.
 static void print_langevin(const struct export_job *job, FILE *stream) {
     const double temperature = job->model->setup.temperature * job->units.temperature;
-    fprintf(stream, "if \"${friction} == langevin\" then &\n  \"pair_style table linear %zu\"",
-            job->grids.grid[0][0].rows);
+    fprintf(stream, "if \"${friction} == langevin\" then &\n  \"pair_style %stable linear %zu",
+            mf_export_lammps_overlays(job) ? "hybrid/overlay " : "", job->grids.grid[0][0].rows);
+    mf_export_lammps_density_styles(job, stream);
     for (int pair = 0; pair < job->grids.pairs; pair++) {
         fprintf(stream, " &\n  \"pair_coeff ");
         print_types(job, pair, stream);
-        fprintf(stream, " ");
+        fprintf(stream, mf_export_lammps_overlays(job) ? " table " : " ");
         print_names(job, pair, stream);
         fprintf(stream, "\"");
     }
+    mf_export_lammps_density_coefficients(job, stream);
     fprintf(stream, " &\n  \"fix bath all langevin %.12g %.12g %.6g ${seed} zero yes\"",
             temperature, temperature, mf_export_slowing(job) * job->units.time);
 }
@@ -288,6 +296,7 @@ static void print_input(const struct export_job *job, FILE *stream) {
 static enum status write(const struct export_job *job) {
     TRY(mf_export_file(job, "mesofit.table", print_table));
     TRY(mf_export_file(job, "data.mesofit", print_data));
+    TRY(mf_export_lammps_write_densities(job));
     return mf_export_file(job, "in.mesofit", print_input);
 }
 
@@ -367,6 +376,7 @@ const struct export_engine mf_export_lammps = {
     .max_types = COMPOSITION_MAX_TYPES,
     .flat = true,
     .molecules = true,
+    .many_body = true,
     .has_law = mf_export_lammps_has_law,
     .check = mf_export_lammps_check,
     .write = write,

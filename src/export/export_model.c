@@ -175,15 +175,16 @@ static enum status read_summary(struct reading *reading) {
     return mf_json_close(document, STATUS_OK);
 }
 
-/// The first interaction beside the pairs that is not of molecules, or NULL.
+/// The first interaction beside the pairs that is not of molecules or local densities, or NULL.
 static const struct interaction *find_other(const struct simulation_setup *setup) {
     for (int k = 0; k < setup->interactions; k++)
-        if (setup->interaction[k].kind != &mf_molecules)
+        if (setup->interaction[k].kind != &mf_molecules &&
+            setup->interaction[k].kind != &mf_many_body)
             return setup->interaction[k].kind;
     return NULL;
 }
 
-/// What forces of pairs and molecules and velocities do not express.
+/// What forces of pairs, molecules and local densities and velocities do not express.
 static enum status check_scene(const struct export_model *model) {
     const struct simulation_setup *setup = &model->setup;
     const char *what = NULL, *why = NULL;
@@ -196,7 +197,7 @@ static enum status check_scene(const struct export_model *model) {
         why = "moves particles without velocities; only dynamics with velocities are exported";
     } else if (find_other(setup)) {
         what = find_other(setup)->name;
-        why = "is not a force of pairs or molecules; only these are exported";
+        why = "is not a force of pairs, molecules or local densities; only these are exported";
     }
     return what == NULL ? STATUS_OK
                         : mf_status_fail(STATUS_BAD_INPUT, "%s: cannot be exported: \"%s\" %s",
@@ -432,6 +433,12 @@ void mf_export_model_pair(const struct export_model *model, int pair, int type[2
 }
 
 double mf_export_model_cutoff(const struct export_model *model) {
-    const double potential = model->setup.potential->cutoff;
-    return model->setup.omega ? fmax(potential, model->setup.omega->cutoff) : potential;
+    const struct simulation_setup *setup = &model->setup;
+    const struct many_body *law = mf_many_body_find(setup->interaction, setup->interactions);
+    double cutoff = setup->potential->cutoff;
+    if (setup->omega)
+        cutoff = fmax(cutoff, setup->omega->cutoff);
+    for (int t = 0; law && t < law->terms; t++)
+        cutoff = fmax(cutoff, weight_cutoff(&law->term[t].weight));
+    return cutoff;
 }

@@ -35,8 +35,9 @@ struct export_model {
     double *position[3], *velocity[3]; ///< shape [count], by id: in the box [λ], [λ/τ]
     int *image[3];     ///< shape [count], by id: boxes away, so that no bond crosses a wall
     bool equilibrated; ///< they are where the result's own simulation ended
-    size_t rdf_bins;   ///< of g(r), equally wide from 0 on
-    double rdf_range;  ///< where they end [λ]
+    double densest[MANY_BODY_MAX_TERMS]; ///< largest ρ of a central bead there, of each term
+    size_t rdf_bins;                     ///< of g(r), equally wide from 0 on
+    double rdf_range;                    ///< where they end [λ]
     struct export_number temperature, pressure; ///< of the result
     struct export_number diffusion;             ///< D of it, if it was measured
     double configurational;                     ///< its configurational temperature; or NAN
@@ -46,9 +47,9 @@ struct export_model {
 
 /// Read the folder of a finished fit or simulation.
 /// Fails: IO; BAD_INPUT with one line for a folder that is none, has no potential, or whose scene
-/// is of what forces of pairs and molecules and velocities do not express: hard particles, a
-/// solvent, other forces beside the pairs, dynamics without velocities, masses that differ within a
-/// type; NO_MEMORY. Tested: test_export_model.
+/// is of what forces of pairs, molecules and local densities and velocities do not express: hard
+/// particles, a solvent, other forces beside the pairs, dynamics without velocities, masses that
+/// differ within a type; NO_MEMORY. Tested: test_export_model.
 enum status mf_export_model_read(struct export_model *model, const char *folder) MUST_USE;
 void mf_export_model_clear(struct export_model *model);
 
@@ -61,5 +62,5 @@ const struct table *mf_export_model_potential(const struct export_model *model,
 void mf_export_model_pair(const struct export_model *model, int pair, int type[2],
                           char name[COMPOSITION_PAIR_NAME_SIZE]);
 
-/// Largest cutoff of Φ and ω [λ].
+/// Largest cutoff of Φ, ω and the weights of local densities [λ].
 double mf_export_model_cutoff(const struct export_model *model);

@@ -102,6 +102,21 @@ done:
     return status;
 }
 
+/// The largest densities of central beads, as of the pass that a simulation begins with.
+static void keep_densities(struct export_model *model, const struct simulation *simulation) {
+    const struct particles *particles = &simulation->particles;
+    for (int n = 0; n < simulation->interactions; n++) {
+        const struct interaction_use *use = &simulation->interaction[n];
+        const struct many_body *law = use->choice.parameters;
+        for (int t = 0; use->choice.kind == &mf_many_body && t < law->terms; t++) {
+            const double *density = mf_many_body_density(use->state, t);
+            for (size_t k = 0; k < particles->count; k++)
+                if (law->term[t].central >> type_of(model, particles->id[k]) & 1)
+                    model->densest[t] = fmax(model->densest[t], density[k]);
+        }
+    }
+}
+
 enum status mf_export_start_find(struct export_model *model) {
     enum status status = STATUS_OK;
     struct simulation_start start;
@@ -113,6 +128,7 @@ enum status mf_export_start_find(struct export_model *model) {
         status = mf_status_prefix(status, "%s", model->folder);
     CHECK(status);
     CHECK(keep_state(model, &simulation.particles));
+    keep_densities(model, &simulation);
     CHECK(keep_images(model, &simulation.particles));
 done:
     mf_simulation_clear(&simulation);

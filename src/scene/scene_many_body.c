@@ -140,6 +140,13 @@ bool mf_scene_many_body_remark(const struct scene_many_body *many_body, const vo
     const struct many_body_term *of = &many_body->law->term[term];
     const struct density_energy *energy = &of->energy;
     double found[2];
+    if (mf_density_energy_is_zero(energy)) {
+        snprintf(line, SCENE_MANY_BODY_REMARK_SIZE,
+                 "many_body.%s.energy: all its coefficients are 0, and so is the energy: give one, "
+                 "or leave \"%s\" out",
+                 of->name, of->name);
+        return true;
+    }
     if (!mf_many_body_was_beyond(many_body->law, state, term, found))
         return false;
     const char *const unit = density_unit(&many_body->weight[term], units->dimensions);

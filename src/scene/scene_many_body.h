@@ -35,8 +35,8 @@ static inline bool scene_many_body_is_fitted(const struct scene_many_body *many_
 }
 void mf_scene_many_body_clear(struct scene_many_body *many_body);
 
-/// What a term was found to do beyond the ends of its table since the begin, in one line that names
-/// it, with densities in the unit of the file; false: nothing.
+/// What a term was found to do beyond the ends of its table since the begin, or that its energy is
+/// 0, in one line that names it, with densities in the unit of the file; false: nothing.
 /// @param[in] state  of the interaction
 enum { SCENE_MANY_BODY_REMARK_SIZE = 320 };
 bool mf_scene_many_body_remark(const struct scene_many_body *many_body, const void *state, int term,

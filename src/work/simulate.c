@@ -196,7 +196,8 @@ struct remark {
     char line[SCENE_MANY_BODY_REMARK_SIZE];
 };
 
-/// Where local densities went beyond what their energies are tabulated for. Returns how many lines.
+/// Where local densities went beyond what their energies are tabulated for, or have none. Returns
+/// how many lines.
 static int find_remarks(const struct run *run, struct remark remark[MANY_BODY_MAX_TERMS]) {
     const struct scene_many_body *many_body = &run->scene.many_body;
     const struct simulation *simulation = &run->simulation;

@@ -7,6 +7,7 @@
 #include "export/export_units.h"
 #include "forces/bonded.h"
 #include "shared/is_close.h"
+#include "shared/lammps_runs.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -92,13 +93,12 @@ static void make_result(struct temporary_folder *folder, bool with_tables) {
 /// Energies of the pairs and of each order of terms, and forces by id, of the exported
 /// configuration, as our engine has them.
 struct ours {
-    struct export_model model;
-    struct simulation simulation;
+    struct lammps_runs_ours of;
     double pairs, bonded[BONDED_KINDS];
 };
 
 static double energy_of(const struct ours *ours, int order) {
-    const struct molecules *molecules = ours->model.molecules;
+    const struct molecules *molecules = ours->of.model.molecules;
     double sum = 0;
     for (int k = 0; k < molecules->topology.kinds; k++) {
         const struct topology_kind *kind = &molecules->topology.kind[k];
@@ -108,9 +108,9 @@ static double energy_of(const struct ours *ours, int order) {
                 int32_t place[BONDED_MAX_TERM_BEADS];
                 double q, energy;
                 for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
-                    place[bead] = (int32_t)ours->simulation.particles
+                    place[bead] = (int32_t)ours->of.simulation.particles
                                       .place[topology_id(kind, m, term->bead[bead])];
-                mf_bonded_measure(order, 1, place, &ours->simulation.particles, &q);
+                mf_bonded_measure(order, 1, place, &ours->of.simulation.particles, &q);
                 mf_bonded_value(&molecules->group[order][term->group].curve, q, &energy, NULL);
                 sum += energy;
             }
@@ -119,24 +119,12 @@ static double energy_of(const struct ours *ours, int order) {
 }
 
 static void find_ours(struct ours *ours) {
-    struct simulation_start start = {{0}, {0}};
-    assert_ok(mf_export_model_read(&ours->model, "out"));
-    for (int d = 0; d < 3; d++) {
-        start.position[d] = ours->model.position[d];
-        start.velocity[d] = ours->model.velocity[d];
-    }
-    assert_ok(mf_simulation_init(&ours->simulation, &ours->model.setup, &start));
-    assert_ok(mf_simulation_compute_potential(&ours->simulation));
-    ours->pairs = ours->simulation.sums.energy;
+    lammps_runs_find_ours(&ours->of);
+    ours->pairs = ours->of.simulation.sums.energy;
     for (int order = 0; order < BONDED_KINDS; order++) {
         ours->bonded[order] = energy_of(ours, order);
         ours->pairs -= ours->bonded[order];
     }
-}
-
-static void clear_ours(struct ours *ours) {
-    mf_simulation_clear(&ours->simulation);
-    mf_export_model_clear(&ours->model);
 }
 
 // Theirs ------------------------------------------------------------------------------------------
@@ -150,83 +138,30 @@ static void skip_without(const char *program) {
     skip();
 }
 
-/// The exported input up to its integrator, then energies and forces of the start, without the bath
-/// whose noise is a force, too.
-static void run_lammps(void) {
-    FILE *from = fopen("lammps/in.mesofit", "r"), *to = fopen("lammps/in.once", "w");
-    char line[4096];
-    assert_true(from && to);
-    while (fgets(line, sizeof line, from) && strncmp(line, "fix move", 8) != 0)
-        fputs(line, to);
-    fputs("unfix bath\nfix move all nve\n"
-          "thermo_style custom step evdwl ebond eangle edihed\n"
-          "thermo_modify norm no format float %.15g\n"
-          "dump forces all custom 1 forces.txt id fx fy fz\n"
-          "dump_modify forces sort id format float %.15g\nrun 0\n",
-          to);
-    fclose(from);
-    fclose(to);
-    if (system("cd lammps && lmp -in in.once >lmp.out 2>&1") != 0)
-        fail_msg("LAMMPS failed: see lammps/lmp.out");
-}
-
-/// The line of the thermo output.
-static void read_energies(double energy[4]) {
-    FILE *stream = fopen("lammps/log.lammps", "r");
-    char line[1024];
-    bool there = false;
-    assert_non_null(stream);
-    while (!there && fgets(line, sizeof line, stream))
-        there = strstr(line, "E_bond") && fgets(line, sizeof line, stream) &&
-                sscanf(line, "%*d %lf %lf %lf %lf", &energy[0], &energy[1], &energy[2],
-                       &energy[3]) == 4;
-    assert_true(there);
-    fclose(stream);
-}
-
-/// The largest difference of a force from ours, in units of the engine.
-static double compare_forces(const struct ours *ours, double unit) {
-    FILE *stream = fopen("lammps/forces.txt", "r");
-    char line[1024];
-    double worst = 0;
-    size_t rows = 0, id;
-    double f[3];
-    assert_non_null(stream);
-    while (fgets(line, sizeof line, stream))
-        if (sscanf(line, "%zu %lf %lf %lf", &id, &f[0], &f[1], &f[2]) == 4) {
-            const size_t place = ours->simulation.particles.place[id - 1];
-            for (int d = 0; d < 3; d++)
-                worst = fmax(worst, fabs(f[d] / unit - ours->simulation.particles.force[d][place]));
-            rows++;
-        }
-    fclose(stream);
-    assert_int_equal(rows, ours->model.count);
-    return worst;
-}
-
 static void compare(struct temporary_folder *folder, bool with_tables, double per_term,
                     double force_bound) {
     static struct run_program_result result;
     static struct ours ours;
     double energy[4];
-    skip_without("lmp");
+    lammps_runs_skip_without(NULL);
     make_result(folder, with_tables);
     RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "lammps");
     run_program_assert_code(&result, 0);
-    run_lammps();
+    lammps_runs_once("evdwl ebond eangle edihed", energy, 4);
     find_ours(&ours);
-    read_energies(energy);
-    const struct export_units units = mf_export_units(EXPORT_REAL, &ours.model.scene.units, false);
-    const double force = compare_forces(&ours, export_units_force(&units));
+    const struct export_units units =
+        mf_export_units(EXPORT_REAL, &ours.of.model.scene.units, false);
+    const double force = lammps_runs_compare_forces(&ours.of, export_units_force(&units));
     print_message("pairs %.9g %.9g", energy[0] / units.energy, ours.pairs);
     for (int order = 0; order < BONDED_KINDS; order++)
         print_message(", %ss %.9g %.9g", mf_bonded_kinds[order]->name,
                       energy[1 + order] / units.energy, ours.bonded[order]);
     print_message("; forces differ by %.2g at most\n", force);
-    assert_true(fabs(energy[0] / units.energy - ours.pairs) < 1e-5 * (double)ours.model.count);
+    assert_true(fabs(energy[0] / units.energy - ours.pairs) < 1e-5 * (double)ours.of.model.count);
     for (int order = 0; order < BONDED_KINDS; order++)
         assert_true(fabs(energy[1 + order] / units.energy - ours.bonded[order]) <
-                    per_term * (double)mf_topology_terms(&ours.model.molecules->topology, order));
+                    per_term *
+                        (double)mf_topology_terms(&ours.of.model.molecules->topology, order));
     assert_true(force < force_bound);
     if (system("cd lammps && lmp -in in.mesofit -var steps 200 -var equilibration 100 >lmp.out "
                "2>&1") != 0)
@@ -234,7 +169,7 @@ static void compare(struct temporary_folder *folder, bool with_tables, double pe
     char *said = temporary_folder_read("lammps/lmp.out");
     assert_null(strstr(said, "image flags"));
     free(said);
-    clear_ours(&ours);
+    lammps_runs_clear_ours(&ours.of);
 }
 
 /// LAMMPS has these laws, so that only digits of the files are lost; pairs are a table of forces up
@@ -314,15 +249,16 @@ static void compare_gromacs(struct temporary_folder *folder, bool with_tables, d
     find_ours(&ours);
     read_log(energy);
     const struct export_units units =
-        mf_export_units(EXPORT_NANOMETRES, &ours.model.scene.units, true);
+        mf_export_units(EXPORT_NANOMETRES, &ours.of.model.scene.units, true);
     for (int order = 0; order < BONDED_KINDS; order++)
         print_message("%ss %.7g %.7g ", mf_bonded_kinds[order]->name, energy[order] / units.energy,
                       ours.bonded[order]);
     print_message("\n");
     for (int order = 0; order < BONDED_KINDS; order++)
         assert_true(fabs(energy[order] / units.energy - ours.bonded[order]) <
-                    per_term * (double)mf_topology_terms(&ours.model.molecules->topology, order));
-    clear_ours(&ours);
+                    per_term *
+                        (double)mf_topology_terms(&ours.of.model.molecules->topology, order));
+    lammps_runs_clear_ours(&ours.of);
 }
 
 /// In single precision, of coordinates with seven decimals.

@@ -2,6 +2,7 @@
 //
 // `mesofit fit` with energies of local densities: numbers of f of a twin found again, the potential
 // of its pairs beside f, and what is refused.
+#include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -11,6 +12,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static struct run_program_result result;
 
@@ -69,11 +71,36 @@ static void assert_found(const char *name, double truth, double largest_error) {
         fail_msg("%s = %g +- %g, not %g", name, value, error, truth);
 }
 
+/// What is exported is the energy that was found: the polynomial at the first row and at the last.
+static void assert_exported(void) {
+    const double c1 = results_parameter("out/summary.json", "many_body.crowd.energy.c1", "value");
+    const double c2 = results_parameter("out/summary.json", "many_body.crowd.energy.c2", "value");
+    double density[2], f;
+    int rows;
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps");
+    run_program_assert_code(&result, 0);
+    char *text = temporary_folder_read("lammps/crowd.density");
+    FILE *stream = fmemopen(text, strlen(text), "r");
+    assert_non_null(stream);
+    assert_int_equal(fscanf(stream, "#%*[^\n]\n#%*[^\n]\n%*d %d %*f %*f %*d %*d %lf %lf %*f", &rows,
+                            &density[0], &density[1]),
+                     3);
+    for (int k = 0; k < rows; k++) {
+        assert_int_equal(fscanf(stream, "%lf", &f), 1);
+        const double x = density[k > 0];
+        if (k == 0 || k == rows - 1)
+            assert_close_relative(f, c1 * x + c2 * x * (x - 2 * 2.4), 1e-6);
+    }
+    fclose(stream);
+    free(text);
+}
+
 static void test_fit_finds_an_energy_of_the_density(void **state) {
     write_fit(*state, NUMBERS, PAIRS DENSITIES("0.1", "0.6"), GAUSS_NEWTON);
     run_fit();
     assert_found("many_body.crowd.energy.c1", 0.5, 0.2);
     assert_found("many_body.crowd.energy.c2", 1, 0.4);
+    assert_exported();
 }
 
 /// With f the potential of the twin's pairs is found; without it another one meets the same g(r),

@@ -39,6 +39,21 @@ static void write_all(struct temporary_folder *folder, const char *from, const c
     small_inputs_write(folder, "f.tsv", energy, NULL, NULL);
 }
 
+/// As where it was meant to be fitted.
+static void test_a_polynomial_without_coefficients_is_told(void **state) {
+    static const char from[] = "\"law\": \"expression\", \"formula\": \"rho^2/10\", \"maximum\": 8";
+    write_all(*state, from, "\"law\": \"polynomial\", \"origin\": 3");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "none");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err,
+                    "mesofit: warning: many_body.shell.energy: all its coefficients are 0");
+    assert_null(strstr(result.err, "many_body.crowd"));
+    write_all(*state, from, "\"law\": \"polynomial\", \"c4\": 0.01");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "some");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "coefficients are 0"));
+}
+
 /// What was used runs again to the same table, in pieces too, and a density beyond a table is told.
 static void test_a_scene_is_read_and_written_back(void **state) {
     static const char *const tables[] = {"thermodynamics.tsv", NULL};
@@ -209,27 +224,17 @@ static void test_what_cannot_be_is_refused_in_one_line(void **state) {
     }
 }
 
-/// An inversion would sample another fluid.
-static void test_other_engines_refuse_it(void **state) {
-    write_all(*state, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
-    run_program_assert_code(&result, 0);
-    RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs", "-o", "refused");
-    run_program_assert_refused(&result, "refused", "gromacs", 1,
-                               (const char *const[]){"\"many_body\"", NULL});
-}
-
 #define CASE(test) cmocka_unit_test_setup_teardown(test, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         CASE(test_a_scene_is_read_and_written_back),
+        CASE(test_a_polynomial_without_coefficients_is_told),
         CASE(test_other_tables_have_other_energies),
         CASE(test_units_of_a_file_are_those_of_its_densities),
         CASE(test_densities_beyond_a_table_are_told_in_the_units_of_the_file),
         CASE(test_excluded_pairs_do_not_count),
         CASE(test_what_cannot_be_is_refused_in_one_line),
-        CASE(test_other_engines_refuse_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 // What is exported, run by LAMMPS (Debian's lmp; skipped where there is none): water with the
 // shipped potential has the g(r), temperature and pressure of our own simulation, and a fluid with
 // the friction of the package DPD-BASIC, where lmp has that, also its diffusion.
+#include "shared/lammps_runs.h"
 #include "shared/length.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
@@ -13,13 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void skip_without_lammps(void) {
-    if (system("command -v lmp >/dev/null") == 0)
-        return;
-    print_message("lmp is not installed: LAMMPS is not run\n");
-    skip();
-}
 
 /// The scene of runs/spc-water-imc with the potential that it found, and a finer step.
 static void write_scene(struct temporary_folder *folder) {
@@ -41,65 +35,11 @@ static void write_scene(struct temporary_folder *folder) {
     small_inputs_write(folder, "scene.json", text, NULL, NULL);
 }
 
-/// The last rows of rdf.dat, "bin r g coordination", beside ours.
-static double rdf_difference(const char *ours, const char *theirs, double unit) {
-    FILE *first = fopen(ours, "r"), *second = fopen(theirs, "r");
-    char line[512], other[512];
-    double squares = 0;
-    int rows = 0;
-    assert_true(first && second);
-    for (int k = 0; k < 4; k++) // three comments and the step
-        assert_non_null(fgets(other, sizeof other, second));
-    while (fgets(line, sizeof line, first)) {
-        double r, g, their_r, their_g;
-        if (line[0] == '#')
-            continue;
-        assert_int_equal(sscanf(line, "%lf %lf", &r, &g), 2);
-        assert_non_null(fgets(other, sizeof other, second));
-        assert_int_equal(sscanf(other, "%*d %lf %lf", &their_r, &their_g), 2);
-        assert_true(fabs(their_r - unit * r) < 1e-5); // the same bins
-        squares += (g - their_g) * (g - their_g);
-        rows++;
-    }
-    fclose(first);
-    fclose(second);
-    assert_int_equal(rows, 100);
-    return sqrt(squares / rows);
-}
-
-/// Mean of a column of thermo.dat, and its error by twenty blocks.
-static double mean_of(const char *file, int column, double *error) {
-    enum { BLOCKS = 20 };
-    static double values[100000];
-    FILE *stream = fopen(file, "r");
-    char line[512];
-    int rows = 0;
-    double sum = 0, squares = 0;
-    assert_non_null(stream);
-    while (fgets(line, sizeof line, stream)) {
-        double v[4];
-        if (line[0] != '#' && sscanf(line, "%lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3]) == 4)
-            values[rows++] = v[column];
-    }
-    fclose(stream);
-    for (int b = 0; b < BLOCKS; b++) {
-        double block = 0;
-        for (int k = 0; k < rows / BLOCKS; k++)
-            block += values[b * (rows / BLOCKS) + k];
-        block /= rows / BLOCKS;
-        sum += block;
-        squares += block * block;
-    }
-    sum /= BLOCKS;
-    *error = sqrt((squares / BLOCKS - sum * sum) / (BLOCKS - 1));
-    return sum;
-}
-
 /// False alarms: T and P 4.5 standard errors each, 1e-5; g, which statistics alone would have
 /// 0.0024 apart, is asked for by what the export promises; in short statistics have 0.007.
 static void test_lammps_has_our_water(void **state) {
     static struct run_program_result result;
-    skip_without_lammps();
+    lammps_runs_skip_without(NULL);
     write_scene(*state);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
@@ -110,13 +50,13 @@ static void test_lammps_has_our_water(void **state) {
                                 : "cd lammps && lmp -in in.mesofit -var equilibration 500 "
                                   "-var steps 2000 >lmp.out 2>&1"),
                      0);
-    const double difference = rdf_difference("out/rdf.tsv", "lammps/rdf.dat", 4.65); // A
+    const double difference = lammps_runs_rdf_difference(4.65); // A
     double error;
-    const double temperature = mean_of("lammps/thermo.dat", 1, &error);
+    const double temperature = lammps_runs_mean(1, &error);
     print_message("rms of g - ours: %.4f; T %.2f(%.2f) K\n", difference, temperature, error);
     assert_true(difference < (length_is_long() ? 0.004 : 0.014));
     assert_true(fabs(temperature - 298) < 4.5 * error + 0.001 * 298);
-    const double pressure = mean_of("lammps/thermo.dat", 2, &error);
+    const double pressure = lammps_runs_mean(2, &error);
     const double unit = results_number("out/summary.json", "physical.pressure_bar") /
                         results_number("out/summary.json", "pressure") / 1.01325;
     const double ours = unit * results_number("out/summary.json", "pressure");
@@ -200,11 +140,7 @@ static void test_lammps_has_our_friction(void **state) {
         "\"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"exponent\": 0.5},\n"
         "\"rdf\": {\"range\": 2, \"bins\": 100}, \"motion\": {\"lags\": 40, \"every\": 5},\n"
         "\"measure\": {\"equilibration\": 500, \"samples\": 500, \"every\": 10}}\n";
-    skip_without_lammps();
-    if (system("lmp -h | grep -q 'dpd/ext/tstat'") != 0) {
-        print_message("lmp lacks the package DPD-BASIC: its friction is not run\n");
-        skip();
-    }
+    lammps_runs_skip_without("dpd/ext/tstat");
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
@@ -216,8 +152,8 @@ static void test_lammps_has_our_friction(void **state) {
                "-var dump 5 >lmp.out 2>&1"),
         0);
     double error;
-    const double difference = rdf_difference("out/rdf.tsv", "lammps/rdf.dat", 1);
-    const double temperature = mean_of("lammps/thermo.dat", 1, &error);
+    const double difference = lammps_runs_rdf_difference(1);
+    const double temperature = lammps_runs_mean(1, &error);
     print_message("rms of g - ours: %.4f; T %.4f(%.4f)\n", difference, temperature, error);
     assert_true(difference < 0.03 && fabs(temperature - 1) < 4.5 * error + 0.01);
     const double ours = results_number("out/summary.json", "motion.diffusion_msd");
