@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The samples of a state in an iteration: until they have settled and are exact enough.
+#include "base/spent.h"
 #include "inversion/inversion.h"
 
 #include <math.h>
@@ -79,6 +80,7 @@ struct sampling {
     struct replicas_plan plan;
     struct inverse_progress progress;
     uint64_t sweeps;                        ///< of each replica
+    double spent_before;                    ///< on samples, without these [s]
     int failures;                           ///< times that something drifted
     struct target_distance before[TARGETS]; ///< of the samples before, if there were any
 };
@@ -144,6 +146,7 @@ static enum status take(struct sampling *sampling, bool again) {
         TRY(mf_replicas_double(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) / 2;
     } else {
+        mf_spent_lose(mf_spent().seconds[SPENT_SAMPLES] - sampling->spent_before);
         state->work.mixed = state->work.mixed && !now->scatter;
         TRY(mf_replicas_run(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) + (uint64_t)now->equilibration;
@@ -180,6 +183,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     struct sampling sampling = {.inversion = inversion,
                                 .state = state,
                                 .listener = listener,
+                                .spent_before = mf_spent().seconds[SPENT_SAMPLES],
                                 .plan = plan(inversion, progress->stretch),
                                 .progress = {.iteration = progress->iteration,
                                              .iterations = (uint32_t)state->parameters->iterations,
