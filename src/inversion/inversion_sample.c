@@ -26,14 +26,28 @@ enum { DISORDER_EQUILIBRATION = 5 };
 /// not settled.
 enum { MAX_TIMES = 600 };
 
-/// The sweeps and least samples of an iteration, with so many times the least equilibration and
-/// spacing.
-static struct replicas_plan plan(const struct inversion *inversion, int64_t stretch) {
+/// Independent samples after which replicas that go on with another potential have forgotten the
+/// one before: its effect falls as exp(−2 t/memory), to 3e-4.
+enum { FORGETTING = 4 };
+
+/// The equilibration of replicas: that of the parameters, so many times, if they begin from
+/// disorder or their memory is not known; less if they forget sooner.
+static int64_t equilibration_of(const struct inversion_state *state, int64_t stretch, bool scatter) {
+    const int64_t most = state->parameters->equilibration * stretch;
+    const double memory = state->work.memory;
+    if (scatter)
+        return most * DISORDER_EQUILIBRATION;
+    return memory > 0 ? (int64_t)fmin((double)most, ceil(FORGETTING * memory)) : most;
+}
+
+/// The sweeps and least samples of an iteration, with so many times the equilibration and the
+/// least spacing.
+static struct replicas_plan plan(const struct inversion *inversion,
+                                 const struct inversion_state *state, int64_t stretch) {
     const struct inversion_parameters *p = &inversion->parameters;
     const bool scatter = inversion->course.progress.from_disorder;
     return (struct replicas_plan){.scatter = scatter,
-                                  .equilibration = p->equilibration * stretch *
-                                                   (scatter ? DISORDER_EQUILIBRATION : 1),
+                                  .equilibration = equilibration_of(state, stretch, scatter),
                                   .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
                                   .every = p->every * stretch};
 }
@@ -119,7 +133,7 @@ static bool is_hopeless(struct sampling *sampling) {
     const struct inversion *inversion = sampling->inversion;
     const struct targets *targets = &sampling->state->problem->targets;
     struct inversion_assessment *assessment = &sampling->state->assessment;
-    const struct replicas_plan min = plan(inversion, 1);
+    const struct replicas_plan min = plan(inversion, sampling->state, 1);
     const uint64_t first = replicas_plan_sweeps(&min) + (uint64_t)min.equilibration;
     const bool farther = sampling->before[TARGET_RDF].count > 0 &&
                          mf_inversion_assessment_noises(assessment, targets, assessment->distance) >
@@ -184,7 +198,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
                                 .state = state,
                                 .listener = listener,
                                 .spent_before = mf_spent().seconds[SPENT_SAMPLES],
-                                .plan = plan(inversion, progress->stretch),
+                                .plan = plan(inversion, state, progress->stretch),
                                 .progress = {.iteration = progress->iteration,
                                              .iterations = (uint32_t)state->parameters->iterations,
                                              .best = mf_targets_error(&inversion->problem->targets,
@@ -209,6 +223,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
             break;
     }
     unequilibrated->sweeps = sampling.sweeps;
+    state->work.memory = state->inefficiency * (double)sampling.plan.every;
     state->assessment.useless = unequilibrated->found && !mf_inversion_gives_direction(state);
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
