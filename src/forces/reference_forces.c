@@ -36,19 +36,19 @@ void mf_reference_energies(const struct table *potential, const struct compositi
 /// Thickness of the shell inside the cutoff in which pairs are counted, relative to the cutoff.
 static const double shell = 0.01;
 
-/// What a pair in the shell says of the density of pairs at the cutoff, where Φ = 0: those nearer
-/// have less room, and are rarer or more frequent by exp(−Φ/k_B T).
-static double density_at_cutoff(const struct table *potential, int pair, double r,
-                                double temperature, int dimensions) {
+double mf_reference_shell_begin(const struct table *potential, int pair) {
+    return (1 - shell) * table_cutoff(potential, pair);
+}
+
+double mf_reference_density_at_cutoff(const struct table *potential, int pair, double r,
+                                      double temperature, int dimensions) {
     const double cutoff = table_cutoff(potential, pair);
     double phi;
     mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
     return pow(cutoff / r, dimensions - 1) * exp(phi / temperature) / (shell * cutoff);
 }
 
-/// Σ∇²U of a force that ends abruptly: the slope jumps to 0 at the cutoff, which is a Dirac peak of
-/// Φ'' seen by the pairs that are just there.
-static double edge_laplacian(const struct table *potential, int pair, double density) {
+double mf_reference_edge_laplacian(const struct table *potential, int pair, double density) {
     double slope;
     mf_table_evaluate_pair(potential, pair, table_cutoff(potential, pair) * (1 - 1e-9), NULL,
                            &slope, NULL);
@@ -78,8 +78,9 @@ enum status mf_reference_configurational(const struct table *potential,
             if (r >= cutoff)
                 continue;
             mf_table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
-            if (r > (1 - shell) * cutoff)
-                density[pair] += density_at_cutoff(potential, pair, r, temperature, dimensions);
+            if (r > mf_reference_shell_begin(potential, pair))
+                density[pair] +=
+                    mf_reference_density_at_cutoff(potential, pair, r, temperature, dimensions);
             *laplacian += 2 * (curvature + (dimensions - 1) * slope / r);
             for (int d = 0; d < dimensions; d++) {
                 force[3 * i + (size_t)d] -= slope * r_ij[d] / r;
@@ -87,7 +88,7 @@ enum status mf_reference_configurational(const struct table *potential,
             }
         }
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
-        *laplacian += edge_laplacian(potential, pair, density[pair]);
+        *laplacian += mf_reference_edge_laplacian(potential, pair, density[pair]);
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
     for (int d = 0; d < dimensions && beside; d++)

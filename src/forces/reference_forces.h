@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What the pair kernels do not find: energies of particles, and the configurational
-/// temperature; and a slow twin of local densities.
+/// @file What the pair kernels do not find: energies of particles; and slow twins of the
+/// configurational temperature and of local densities.
 #pragma once
 
 #include "forces/many_body.h"
@@ -31,6 +31,20 @@ enum status mf_reference_configurational(const struct table *potential,
                                          const struct particles *particles,
                                          const struct neighbours *neighbours, double *const *beside,
                                          double *squares, double *laplacian) MUST_USE;
+
+/// @name Of a force that ends abruptly
+
+/// Where the shell inside the cutoff begins in which pairs are counted [λ].
+double mf_reference_shell_begin(const struct table *potential, int pair);
+
+/// What a pair in the shell says of the density of pairs at the cutoff, where Φ = 0: those nearer
+/// have less room, and are rarer or more frequent by exp(−Φ/k_B T).
+double mf_reference_density_at_cutoff(const struct table *potential, int pair, double r,
+                                      double temperature, int dimensions);
+
+/// Σ∇²U of the cutoff: the slope jumps to 0 there, which is a Dirac peak of Φ'' seen by the pairs
+/// that are just there, of which `density` are so many in a length [1/λ].
+double mf_reference_edge_laplacian(const struct table *potential, int pair, double density);
 
 /// Energies, forces and virials of local densities by two loops over all pairs, in double
 /// precision: what the vector kernels must find.

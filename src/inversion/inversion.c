@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
+#include "base/clock.h"
+#include "base/spent.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -77,7 +80,8 @@ static void describe_samples(const struct inversion *inversion, const double *ow
                                                       first->pressure.error,
                                                       mf_replicas_acceptance(&first->replicas),
                                                       energy.mean / particles,
-                                                      energy.error / particles};
+                                                      energy.error / particles,
+                                                      first->inefficiency};
     memcpy(step->extra, columns, sizeof columns);
     memcpy(step->extra + INVERSION_SHARED_COLUMNS, own, INVERSION_OWN_COLUMNS * sizeof *own);
     for (size_t s = 0; s < inversion->states; s++) {
@@ -117,40 +121,59 @@ static void describe(const struct inversion *inversion, const double *own, bool 
 // An iteration ------------------------------------------------------------------------------------
 
 /// Keep the potential or go back, and step on.
-static enum status advance(struct inversion *inversion, struct inverse_step *step) {
+static enum status advance(struct inversion *inversion, struct inverse_step *step, bool *kept) {
     struct inversion_course *course = &inversion->course;
     const struct inversion_state *first = inversion->state;
     const struct inversion_rule *rule = inversion->method->own;
     double own[INVERSION_OWN_COLUMNS] = {0};
-    bool kept, converged;
+    bool converged;
     course->has_other = course->most_probable = false;
     TRY(rule->update(inversion, own));
     mf_inversion_history_add(&inversion->history, first->replicas.counts.mean,
                              first->target.counts);
-    TRY(mf_inversion_course_accept(inversion, &kept));
+    TRY(mf_inversion_course_accept(inversion, kept));
     converged =
-        mf_inversion_has_converged(inversion, kept && !inversion->assessment.unequilibrated.found);
+        mf_inversion_has_converged(inversion, *kept && !inversion->assessment.unequilibrated.found);
     if (course->has_walked)
         TRY(mf_inversion_band_find(inversion));
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
     describe(inversion, own, converged, step);
     if (!step->finished)
-        TRY(mf_inversion_course_go_on(inversion, kept));
+        TRY(mf_inversion_course_go_on(inversion, *kept));
     course->progress.iteration++;
     return STATUS_OK;
+}
+
+/// Processor time of all that was simulated.
+static double simulated(const struct spent *spent) {
+    return spent->seconds[SPENT_EQUILIBRATION] + spent->seconds[SPENT_SAMPLES] +
+           spent->seconds[SPENT_LOST];
+}
+
+/// All but the simulations was algebra. Samples of a potential that is not kept do not count.
+static void account(double begun, const struct spent *before, bool kept) {
+    const struct spent now = mf_spent();
+    mf_spent_add(SPENT_ALGEBRA,
+                 clock_process_seconds() - begun - (simulated(&now) - simulated(before)));
+    if (!kept)
+        mf_spent_lose(now.seconds[SPENT_SAMPLES] - before->seconds[SPENT_SAMPLES]);
 }
 
 enum status mf_inversion_iterate(void *memory, struct inverse_step *step,
                                  const struct inverse_listener *listener) {
     struct inversion *inversion = memory;
+    const double begun = clock_process_seconds();
+    const struct spent before = mf_spent();
+    bool kept;
     if (inversion->course.progress.iteration == 0)
         TRY(mf_inversion_start_of_molecules(inversion, listener));
     TRY(mf_inversion_observe(inversion, listener));
     TRY(mf_inversion_equations_fill(&inversion->equations,
                                     mf_inversion_band_birge(&inversion->assessment)));
-    TRY(advance(inversion, step));
+    TRY(advance(inversion, step, &kept));
     if (inversion->states > 1)
         mf_inversion_states_end(inversion, step);
+    account(begun, &before, kept);
     return STATUS_OK;
 }

@@ -97,8 +97,8 @@ enum status mf_inversion_write(const void *inversion, const struct inverse_folde
 /// The first of a method's columns; the others may be its own.
 #define INVERSION_COLUMNS                                                                          \
     "damping[1]", "own_noise[1]", "disagreement[1]", "rdf_rms[1]", "pressure", "pressure_error",   \
-        "acceptance[1]", "potential_energy", "potential_energy_error"
-enum { INVERSION_SHARED_COLUMNS = 9, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 9 };
+        "acceptance[1]", "potential_energy", "potential_energy_error", "inefficiency[1]"
+enum { INVERSION_SHARED_COLUMNS = 10, INVERSION_OWN_COLUMNS = INVERSE_EXTRA - 10 };
 
 /// Sample the present potential in all states, and assess them, and make `assessment` of all.
 /// Fails: as inverse_method.iterate.

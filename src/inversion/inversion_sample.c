@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // The samples of a state in an iteration: until they have settled and are exact enough.
+#include "base/spent.h"
 #include "inversion/inversion.h"
 
 #include <math.h>
@@ -18,21 +19,36 @@ static const double gradient_of_noise = 2;
 /// Samples of an iteration double at most so often.
 enum { MAX_DOUBLINGS = 9 };
 
-/// Replicas that begin from disorder are equilibrated so many times as long.
-enum { DISORDER_EQUILIBRATION = 5 };
+/// Replicas that begin from disorder are equilibrated so many times as long. It is hardly ever too
+/// short: samples that drift are equilibration, too.
+enum { DISORDER_EQUILIBRATION = 2 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
 /// not settled.
 enum { MAX_TIMES = 600 };
 
-/// The sweeps and least samples of an iteration, with so many times the least equilibration and
-/// spacing.
-static struct replicas_plan plan(const struct inversion *inversion, int64_t stretch) {
+/// Independent samples after which replicas that go on with another potential have forgotten the
+/// one before: its effect falls as exp(−2 t/memory), to 3e-4.
+enum { FORGETTING = 4 };
+
+/// The equilibration of replicas: that of the parameters, so many times, if they begin from
+/// disorder or their memory is not known; less if they forget sooner.
+static int64_t equilibration_of(const struct inversion_state *state, int64_t stretch, bool scatter) {
+    const int64_t most = state->parameters->equilibration * stretch;
+    const double memory = state->work.memory;
+    if (scatter)
+        return most * DISORDER_EQUILIBRATION;
+    return memory > 0 ? (int64_t)fmin((double)most, ceil(FORGETTING * memory)) : most;
+}
+
+/// The sweeps and least samples of an iteration, with so many times the equilibration and the
+/// least spacing.
+static struct replicas_plan plan(const struct inversion *inversion,
+                                 const struct inversion_state *state, int64_t stretch) {
     const struct inversion_parameters *p = &inversion->parameters;
     const bool scatter = inversion->course.progress.from_disorder;
     return (struct replicas_plan){.scatter = scatter,
-                                  .equilibration = p->equilibration * stretch *
-                                                   (scatter ? DISORDER_EQUILIBRATION : 1),
+                                  .equilibration = equilibration_of(state, stretch, scatter),
                                   .block_samples = (p->samples - 1) / REPLICAS_BLOCKS + 1,
                                   .every = p->every * stretch};
 }
@@ -79,6 +95,7 @@ struct sampling {
     struct replicas_plan plan;
     struct inverse_progress progress;
     uint64_t sweeps;                        ///< of each replica
+    double spent_before;                    ///< on samples, without these [s]
     int failures;                           ///< times that something drifted
     struct target_distance before[TARGETS]; ///< of the samples before, if there were any
 };
@@ -117,7 +134,7 @@ static bool is_hopeless(struct sampling *sampling) {
     const struct inversion *inversion = sampling->inversion;
     const struct targets *targets = &sampling->state->problem->targets;
     struct inversion_assessment *assessment = &sampling->state->assessment;
-    const struct replicas_plan min = plan(inversion, 1);
+    const struct replicas_plan min = plan(inversion, sampling->state, 1);
     const uint64_t first = replicas_plan_sweeps(&min) + (uint64_t)min.equilibration;
     const bool farther = sampling->before[TARGET_RDF].count > 0 &&
                          mf_inversion_assessment_noises(assessment, targets, assessment->distance) >
@@ -144,6 +161,7 @@ static enum status take(struct sampling *sampling, bool again) {
         TRY(mf_replicas_double(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) / 2;
     } else {
+        mf_spent_lose(mf_spent().seconds[SPENT_SAMPLES] - sampling->spent_before);
         state->work.mixed = state->work.mixed && !now->scatter;
         TRY(mf_replicas_run(&state->replicas, now, threads, &sampling->progress, listener));
         sampling->sweeps += replicas_plan_sweeps(now) + (uint64_t)now->equilibration;
@@ -180,7 +198,8 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     struct sampling sampling = {.inversion = inversion,
                                 .state = state,
                                 .listener = listener,
-                                .plan = plan(inversion, progress->stretch),
+                                .spent_before = mf_spent().seconds[SPENT_SAMPLES],
+                                .plan = plan(inversion, state, progress->stretch),
                                 .progress = {.iteration = progress->iteration,
                                              .iterations = (uint32_t)state->parameters->iterations,
                                              .best = mf_targets_error(&inversion->problem->targets,
@@ -205,6 +224,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
             break;
     }
     unequilibrated->sweeps = sampling.sweeps;
+    state->work.memory = state->inefficiency * (double)sampling.plan.every;
     state->assessment.useless = unequilibrated->found && !mf_inversion_gives_direction(state);
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;

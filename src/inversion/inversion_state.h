@@ -90,6 +90,7 @@ struct inversion_state {
     struct inversion_work {
         uint64_t evaluations, sweeps; ///< so far
         bool mixed; ///< since they were placed the replicas have agreed but for their noise
+        double memory; ///< sweeps from one independent sample to the next, as the last ones had
     } work;
 };
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/replicas.h"
 
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "base/spent.h"
 #include "base/statistics.h"
 
 #include <math.h>
@@ -42,7 +44,7 @@ void mf_replicas_clear(struct replicas *replicas) {
 /// Take the samples of block first … last − 1.
 static enum status fill_blocks(struct replica *replica, size_t numbers, size_t first, size_t last,
                                const struct replicas_plan *plan) {
-    const double each = (double)plan->block_samples;
+    const double each = (double)plan->block_samples, begun = clock_thread_seconds();
     for (size_t block = first; block < last; block++) {
         double *mean = replica->block + block * numbers;
         memset(mean, 0, numbers * sizeof *mean);
@@ -53,17 +55,20 @@ static enum status fill_blocks(struct replica *replica, size_t numbers, size_t f
                 mean[a] += replica->sample[a] / each;
         }
     }
+    mf_spent_add(SPENT_SAMPLES, clock_thread_seconds() - begun);
     return STATUS_OK;
 }
 
 /// Equilibrate one sampler, then take its samples.
 static enum status run_one(struct replica *replica, size_t numbers,
                            const struct replicas_plan *plan) {
+    const double begun = clock_thread_seconds();
     mf_comoments_reset(&replica->counts);
     if (plan->scatter)
         TRY(mf_sampler_scatter(&replica->sampler));
     TRY(mf_sampler_begin(&replica->sampler));
     TRY(mf_sampler_equilibrate(&replica->sampler, (uint64_t)plan->equilibration));
+    mf_spent_add(SPENT_EQUILIBRATION, clock_thread_seconds() - begun);
     return fill_blocks(replica, numbers, 0, REPLICAS_BLOCKS, plan);
 }
 

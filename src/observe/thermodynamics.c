@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "base/statistics.h"
-#include "forces/reference_forces.h"
+#include "forces/configurational.h"
 
 #include <math.h>
 
@@ -29,9 +29,9 @@ static enum status configurational(const struct simulation *simulation, double *
     for (int d = 0; d < particles->box.dimensions && !alone; d++)
         NEW_ARRAY(beside[d], particles->count);
     CHECK(mf_simulation_interaction_forces(simulation, beside));
-    CHECK(mf_reference_configurational(
-        simulation->law.potential, &simulation->law.composition, simulation->setup.temperature,
-        particles, &simulation->neighbours, alone ? NULL : beside, squares, laplacian));
+    CHECK(mf_configurational(simulation->law.potential, &simulation->law.composition,
+                             simulation->setup.temperature, particles, &simulation->neighbours,
+                             alone ? NULL : beside, squares, laplacian));
 done:
     for (int d = 0; d < 3; d++)
         mf_memory_free(beside[d]);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem/evaluate.h"
+
+#include "base/clock.h"
+#include "base/spent.h"
 #include "observe/rdf_force.h"
 
 #include <math.h>
@@ -104,6 +107,13 @@ static void copy_positions(const struct particles *particles, double *const *pos
     }
 }
 
+/// Add the processor time of this thread since then; returns its present one.
+static double account(enum spent_on kind, double begun) {
+    const double now = clock_thread_seconds();
+    mf_spent_add(kind, now - begun);
+    return now;
+}
+
 enum status mf_evaluate(const struct inverse_problem *problem,
                         const struct evaluate_candidate *candidate,
                         const struct evaluate_parameters *parameters, double *features,
@@ -113,6 +123,7 @@ enum status mf_evaluate(const struct inverse_problem *problem,
     struct measurement measurement = {0};
     struct observed own = {0};
     struct measure_plan plan = parameters->plan;
+    double begun;
     *result = (struct evaluate_result){0};
     const struct measurement_setup setup = {.targets = &problem->targets,
                                             .potential = candidate->potential,
@@ -128,9 +139,14 @@ enum status mf_evaluate(const struct inverse_problem *problem,
         observed = &own;
     }
     CHECK(mf_measurement_init(&measurement, problem, &setup));
-    CHECK(equilibrate(&measurement.simulation, &plan, parameters->temperature_tolerance, result));
+    begun = clock_thread_seconds();
+    status = equilibrate(&measurement.simulation, &plan, parameters->temperature_tolerance, result);
+    begun = account(SPENT_EQUILIBRATION, begun);
+    CHECK(status);
     result->failure = EVALUATE_BLEW_UP;
-    CHECK(sample(&measurement, candidate->discard_above, parameters, observed, result));
+    status = sample(&measurement, candidate->discard_above, parameters, observed, result);
+    account(status == STATUS_OK ? SPENT_SAMPLES : SPENT_LOST, begun);
+    CHECK(status);
     result->failure = EVALUATE_UNMEASURED;
     if (features)
         mf_targets_take_features(&problem->targets, observed->value, features, NULL);

@@ -146,21 +146,39 @@ static enum status write_history(const struct history *history, const struct inv
 }
 
 static enum status write_timing(const struct history *history, const struct run_folder *folder) {
-    enum { COLUMNS = 3 };
+    enum { BEFORE = 3, COLUMNS = BEFORE + SPENT_KINDS + 2 };
+    static const char *const names[COLUMNS] = {
+        "iteration",       "seconds[s]", "processor_seconds[s]", "equilibration[s]", "samples[s]",
+        "lost_samples[s]", "algebra[s]", "verification[s]",      "figures[s]"};
     const size_t rows = history->iterations;
     OWNED double *values = NULL;
+    struct data_column columns[COLUMNS];
     char path[OUTPUT_PATH_SIZE];
     TRY_ARRAY(values, COLUMNS * rows);
     for (size_t k = 0; k < rows; k++) {
+        const struct history_time *time = &history->times[k];
         values[k] = history->rows[k * (COMMON + history->extra)];
-        values[rows + k] = history->times[k].seconds;
-        values[2 * rows + k] = history->times[k].processor;
+        values[rows + k] = time->seconds;
+        values[2 * rows + k] = time->processor;
+        for (size_t kind = 0; kind < SPENT_KINDS; kind++)
+            values[(BEFORE + kind) * rows + k] = time->spent.seconds[kind];
+        values[(COLUMNS - 2) * rows + k] = time->verification;
+        values[(COLUMNS - 1) * rows + k] = time->figures;
     }
-    const struct data_column columns[] = {{"iteration", values, NULL},
-                                          {"seconds[s]", values + rows, "%.3f"},
-                                          {"processor_seconds[s]", values + 2 * rows, "%.3f"}};
+    for (size_t c = 0; c < COLUMNS; c++)
+        columns[c] = (struct data_column){names[c], values + c * rows, c > 0 ? "%.3f" : NULL};
     mf_run_folder_file(folder, "timing.tsv", path);
     return mf_data_table_write(path, NULL, columns, COLUMNS, rows);
+}
+
+enum status mf_history_close(struct history *history, double verification, double figures,
+                             const struct run_folder *folder) {
+    if (history->iterations == 0)
+        return STATUS_OK;
+    struct history_time *last = &history->times[history->iterations - 1];
+    last->verification = verification;
+    last->figures = figures;
+    return write_timing(history, folder);
 }
 
 /// A field's unit as in the heads of columns, which have no blanks.

@@ -6,12 +6,15 @@
 /// any number of threads and any restart.
 #pragma once
 
+#include "base/spent.h"
 #include "problem/unknowns.h"
 #include "report/run_folder.h"
 
 /// Since the fit began [s]: by the clock, and of processor time of the leading process.
 struct history_time {
     double seconds, processor;
+    struct spent spent;
+    double verification, figures; ///< after the last iteration; else 0
 };
 
 struct history {
@@ -35,6 +38,11 @@ void mf_history_clear(struct history *history);
 /// Append an iteration. Fails: NO_MEMORY.
 enum status mf_history_add(struct history *history, const struct inverse_step *step,
                            struct history_time time) MUST_USE;
+
+/// Add what the verification and the figures have taken to the last iteration, and write
+/// timing.tsv again. Fails: as mf_history_write.
+enum status mf_history_close(struct history *history, double verification, double figures,
+                             const struct run_folder *folder) MUST_USE;
 
 /// Write the tables in these units.
 enum status mf_history_write(const struct history *history, const struct inverse_method *method,

@@ -38,8 +38,9 @@ struct run {
     struct fit_checkpoint checkpoint;
     uint64_t digest; ///< of used.json
     struct checkpoint_pace pace;
-    double seconds_before;   ///< of a run before a restart
-    double processor_origin; ///< processor time of the process, less what the fit has had
+    double seconds_before;     ///< of a run before a restart
+    double processor_origin;   ///< processor time of the process, less what the fit has had
+    struct spent spent_origin; ///< the same of what it went to
     double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [mf_unknowns_points]
     double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_unknowns_points]
     double *without_ramp;                            ///< shape [mf_unknowns_points of Φ]
@@ -58,8 +59,11 @@ struct run {
 };
 
 static struct history_time time_of(const struct run *run) {
-    return (struct history_time){run->seconds_before + mf_progress_seconds(&run->progress),
-                                 clock_process_seconds() - run->processor_origin};
+    struct history_time time = {run->seconds_before + mf_progress_seconds(&run->progress),
+                                clock_process_seconds() - run->processor_origin, mf_spent(), 0, 0};
+    for (int kind = 0; kind < SPENT_KINDS; kind++)
+        time.spent.seconds[kind] -= run->spent_origin.seconds[kind];
+    return time;
 }
 
 static enum status save(struct run *run) {
@@ -80,6 +84,9 @@ static enum status load(struct run *run) {
     TRY(mf_fit_checkpoint_load(&run->checkpoint, path, run->digest));
     run->seconds_before = run->standing.time.seconds;
     run->processor_origin = clock_process_seconds() - run->standing.time.processor;
+    run->spent_origin = mf_spent();
+    for (int kind = 0; kind < SPENT_KINDS; kind++)
+        run->spent_origin.seconds[kind] -= run->standing.time.spent.seconds[kind];
     return STATUS_OK;
 }
 
@@ -353,6 +360,8 @@ static void doubt(struct run *run, const struct verification *verification) {
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
     struct verification *verification = NULL;
+    const double begun = clock_process_seconds(), drawn = clock_children_seconds();
+    double verified;
     struct verifying verifying = {run,
                                   mf_progress_begin(run->progress.quiet, run->progress.watcher)};
     verifying.progress.folder = run->progress.folder;
@@ -364,6 +373,7 @@ static enum status verify_and_write(struct run *run) {
     status =
         mf_fit_verify_states(&run->fit, run->curve, run->standing.number, &listener, verification);
     mf_task_log_use(NULL);
+    verified = clock_process_seconds();
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
@@ -376,6 +386,8 @@ static enum status verify_and_write(struct run *run) {
         CHECK(mf_fit_verify_write(&run->fit, s, &verification[s], &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
+    CHECK(mf_history_close(&run->history, verified - begun, clock_children_seconds() - drawn,
+                           &run->folder));
     mf_fit_report_print(&run->progress, &run->fit, &run->unknowns, &result);
     for (size_t s = 0; s < states; s++)
         if (verification[s].warning[0])
@@ -415,6 +427,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     run->pace.interval = run->pace.next = checkpoint_interval;
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     run->processor_origin = clock_process_seconds();
+    run->spent_origin = mf_spent();
     run->progress.may_end_early = true; // it may converge before the last iteration
     CHECK(prepare(run, file, options));
     status = iterate(run);

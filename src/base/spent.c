@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/spent.h"
+
+static struct spent seen;
+
+struct spent mf_spent(void) {
+    struct spent spent;
+#pragma omp critical(spent)
+    spent = seen;
+    return spent;
+}
+
+void mf_spent_add(enum spent_on kind, double seconds) {
+#pragma omp critical(spent)
+    seen.seconds[kind] += seconds;
+}
+
+void mf_spent_lose(double seconds) {
+    mf_spent_add(SPENT_SAMPLES, -seconds);
+    mf_spent_add(SPENT_LOST, seconds);
+}
