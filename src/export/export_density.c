@@ -2,6 +2,7 @@
 #include "export/export_density.h"
 
 #include "base/memory.h"
+#include "io/output.h"
 
 #include <math.h>
 
@@ -150,4 +151,17 @@ void mf_export_densities_clear(struct export_densities *densities) {
     for (int t = 0; t < densities->terms; t++)
         mf_export_grid_clear(&densities->table[t].grid);
     *densities = (struct export_densities){0};
+}
+
+enum status mf_export_densities_read(struct export_model *model) {
+    struct scene_many_body *many_body = &model->scene.many_body;
+    for (int t = 0; many_body->law && t < many_body->law->terms; t++) {
+        char path[OUTPUT_PATH_SIZE];
+        if (!scene_many_body_is_fitted(many_body, t))
+            continue;
+        snprintf(path, sizeof path, "%.3800s/many_body_%s.tsv", model->folder,
+                 many_body->law->term[t].name);
+        TRY(mf_scene_many_body_give_energy(many_body, t, path, &model->scene.units));
+    }
+    return STATUS_OK;
 }

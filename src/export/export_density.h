@@ -46,3 +46,7 @@ void mf_export_densities_print(const struct export_densities *densities,
 
 /// The terms of a model; NULL: it has none.
 const struct many_body *mf_export_densities_of(const struct export_model *model);
+
+/// Read the energies that a fit found: many_body_NAME.tsv of its folder. Fails: BAD_INPUT, naming
+/// the file; IO; NO_MEMORY. Tested: cli/test_fit_densities.
+enum status mf_export_densities_read(struct export_model *model) MUST_USE;

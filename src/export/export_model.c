@@ -5,6 +5,7 @@
 #include "curves/bonded_table.h"
 #include "curves/sampled.h"
 #include "export/export_columns.h"
+#include "export/export_density.h"
 #include "export/export_start.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
@@ -347,6 +348,7 @@ static enum status find_laws(struct reading *reading) {
     if (reading->unknown & SCENE_FITS_OMEGA)
         TRY(read_omega(model));
     TRY(read_groups(model));
+    TRY(mf_export_densities_read(model));
     leave_out_friction(model);
     if (model->setup.potential == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no potential to export",

@@ -161,6 +161,21 @@ bool mf_scene_many_body_remark(const struct scene_many_body *many_body, const vo
     return true;
 }
 
+enum status mf_scene_many_body_give_energy(struct scene_many_body *many_body, int term,
+                                           const char *file, const struct units *units) {
+    const char *const unit[2] = {density_unit(&many_body->weight[term], units->dimensions),
+                                 "k_B T_0"};
+    OWNED double *rho = NULL, *f = NULL;
+    size_t count = 0;
+    struct curve *curve = &many_body->energy[term];
+    TRY(mf_scene_read_columns(file, unit, -DBL_MAX, units, &rho, &f, &count));
+    TRY(mf_curve_create(curve, &mf_density_energy_table));
+    enum status status = mf_density_energy_set_points(curve, rho, f, count);
+    if (status == STATUS_OK)
+        status = mf_density_energy_init(&many_body->law->term[term].energy, curve);
+    return status == STATUS_OK ? STATUS_OK : mf_status_prefix(status, "%s", file);
+}
+
 static enum status read_term(struct scene_many_body *many_body, struct json_object *object,
                              const char *name, const struct simulation_setup *setup, bool fitted) {
     struct many_body *law = many_body->law;

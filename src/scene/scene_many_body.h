@@ -35,6 +35,11 @@ static inline bool scene_many_body_is_fitted(const struct scene_many_body *many_
 }
 void mf_scene_many_body_clear(struct scene_many_body *many_body);
 
+/// Give a term the energy that was left out: a table of ρ and f. Fails: BAD_INPUT, naming the file;
+/// IO; NO_MEMORY.
+enum status mf_scene_many_body_give_energy(struct scene_many_body *many_body, int term,
+                                           const char *file, const struct units *units) MUST_USE;
+
 /// What a term was found to do beyond the ends of its table since the begin, or that its energy is
 /// 0, in one line that names it, with densities in the unit of the file; false: nothing.
 /// @param[in] state  of the interaction

@@ -158,6 +158,35 @@ static void test_an_energy_is_found_beside_the_potential(void **state) {
                  results_number("target/summary.json", "pressure"), 0.1);
 }
 
+/// The table that LAMMPS reads has the curve that was found, between ρ of a first and a last row.
+static void test_the_energy_that_was_found_is_exported(void **state) {
+    double first, last, step, f[8192] = {0};
+    size_t rows = 0, header = 0;
+    write_fit(*state, "\"precision\": 0.006", "\"precision\": 0.02, \"iterations\": 2");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force", "--quiet");
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "model", "--force");
+    run_program_assert_code(&result, 0);
+    FILE *file = fopen("model/crowd.density", "r");
+    assert_non_null(file);
+    for (char line[256]; fgets(line, sizeof line, file);) {
+        if (header == 0)
+            header = sscanf(line, "%lf %lf %lf", &first, &last, &step) == 3;
+        else if (rows < 8192)
+            rows += sscanf(line, "%lf", &f[rows]) == 1;
+    }
+    fclose(file);
+    const struct found found = read_found("out/many_body_crowd.tsv");
+    assert_in_range(rows, 100, 8191);
+    for (size_t n = 1; n < found.count; n++) {
+        const double place = (found.rho[n] - first) / step, before = (found.rho[0] - first) / step;
+        const size_t k = (size_t)place, k_before = (size_t)before;
+        const double value = f[k] + (place - (double)k) * (f[k + 1] - f[k]);
+        const double value_before =
+            f[k_before] + (before - (double)k_before) * (f[k_before + 1] - f[k_before]);
+        assert_close(value - value_before, found.f[n] - found.f[0], 0.01);
+    }
+}
+
 /// Beside pairs that are known f has its slope.
 static void test_an_energy_is_found_alone(void **state) {
     write_fit(*state, "\"scene\": {", "\"scene\": {" PAIRS);
@@ -197,6 +226,7 @@ static void test_what_cannot_be_found_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         CASE(test_an_energy_is_found_beside_the_potential),
+        CASE(test_the_energy_that_was_found_is_exported),
         CASE(test_an_energy_is_found_alone),
         CASE(test_what_cannot_be_found_is_refused),
     };
