@@ -32,9 +32,11 @@ struct inversion_assessment {
     struct inversion_section section[INVERSION_MAX_SECTIONS];
     int sections;
     struct target_distance distance[TARGETS]; ///< from what is asked for
-    double own_noise;    ///< by the samples alone, rms, of the noisiest section
-    double misfit;       ///< χ² of the excess by bin
-    double disagreement; ///< of the replicas, mf_replicas_disagreement
+    double pressure_reach; ///< how near to it a step may be asked to come, and is judged by:
+                           ///< mf_inversion_pressure_measure [k_B T_0/λ^d]
+    double own_noise;      ///< by the samples alone, rms, of the noisiest section
+    double misfit;         ///< χ² of the excess by bin
+    double disagreement;   ///< of the replicas, mf_replicas_disagreement
     struct inversion_unequilibrated unequilibrated; ///< `found`: the samples are not those of
                                                     ///< equilibrium, and there are to be no more
     bool useless;    ///< what has not settled of them might change a step
@@ -48,7 +50,8 @@ mf_inversion_assessment_worst(const struct inversion_assessment *assessment);
 /// Whether the samples are as exact as was asked for.
 bool mf_inversion_assessment_is_precise(const struct inversion_assessment *assessment);
 
-/// Distances from all targets together, each in units of the noise of these samples.
+/// Distances from all targets together, each in units of the noise of these samples, that from the
+/// pressure of what it can be asked for.
 double mf_inversion_assessment_noises(const struct inversion_assessment *assessment,
                                       const struct targets *targets,
                                       const struct target_distance distance[TARGETS]);

@@ -114,7 +114,7 @@ static void fill_others(const struct inversion_state *state, struct filling *to)
     if (targets_ask(targets, TARGET_PRESSURE))
         fill_row(to, state->pressure.slope,
                  *targets->target[TARGET_PRESSURE].value - state->pressure.value,
-                 state->assessment.distance[TARGET_PRESSURE].noise);
+                 state->assessment.pressure_reach);
     for (size_t pair = 0; pair < kb->pairs; pair++)
         if (isfinite(integrals->value[pair]))
             fill_row(to, kb->slope + pair * state->grid.known,

@@ -12,6 +12,15 @@ static double virial_unit(const struct inversion_state *state) {
     return volume;
 }
 
+/// By which part of itself S is to change, rms over the bins.
+static double find_change(const struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
+    double squares = 0;
+    for (size_t a = 0; a < grid->known; a++)
+        squares += pow(state->excess[a] / state->target.ideal[grid->known_bin[a]], 2);
+    return sqrt(squares / (double)grid->known);
+}
+
 void mf_inversion_pressure_measure(struct inversion_state *state) {
     const struct replicas_mean virial =
         mf_replicas_mean(&state->replicas, SAMPLER_VIRIAL, state->inefficiency);
@@ -21,9 +30,12 @@ void mf_inversion_pressure_measure(struct inversion_state *state) {
     state->pressure.value = (state->box.dimensions * ideal + virial.mean) / unit;
     state->pressure.error = virial.error / unit;
     const struct target *target = &state->problem->targets.target[TARGET_PRESSURE];
-    if (target->count > 0)
-        state->assessment.distance[TARGET_PRESSURE] =
-            mf_targets_distance(target, &state->pressure.value, &state->pressure.error);
+    if (target->count == 0)
+        return;
+    struct target_distance *distance = &state->assessment.distance[TARGET_PRESSURE];
+    *distance = mf_targets_distance(target, &state->pressure.value, &state->pressure.error);
+    state->assessment.pressure_reach =
+        hypot(distance->noise, 2 * find_change(state) * distance->rms);
 }
 
 double mf_inversion_pressure_shift(const struct inversion_state *state) {

@@ -11,8 +11,12 @@ struct inversion_pressure {
     double *slope;       ///< ∂P/∂Φ_b, shape [known]
 };
 
-/// Value and error. The error is the scatter of the chains' means, or what that of the samples
-/// makes of as many independent ones as g(r) sees, if that is more: few chains may agree by chance.
+/// Value and error, the distance from the target, and how near to it a step may be asked to come:
+/// not nearer than the noise, nor, where S is to change by the part δ of itself, than 2 δ of what
+/// is missing. By so much the slopes change on the way, as covariances of counts do, and a step
+/// that goes by what they promise exactly goes astray. The error is the scatter of the chains'
+/// means, or what that of the samples makes of as many independent ones as g(r) sees, if that is
+/// more: few chains may agree by chance.
 void mf_inversion_pressure_measure(struct inversion_state *state);
 
 /// How far from that of equilibrium the pressure may be, see mf_inversion_equilibrium_shift.

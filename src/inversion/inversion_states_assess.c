@@ -77,6 +77,21 @@ static void join_number(const struct inversion_state *state, size_t states, int 
     all->rms = noises * all->noise;
 }
 
+/// As many times as much as the noise as the state that is farthest off in what it can be asked
+/// for.
+static void join_reach(const struct inversion_state *state, size_t states,
+                       struct inversion_assessment *all) {
+    double farthest = 0;
+    for (size_t s = 0; s < states; s++) {
+        const struct inversion_assessment *own = &state[s].assessment;
+        if (targets_ask(&state[s].problem->targets, TARGET_PRESSURE))
+            farthest =
+                fmax(farthest, noises_of(own->distance[TARGET_PRESSURE].rms, own->pressure_reach));
+    }
+    const struct target_distance *distance = &all->distance[TARGET_PRESSURE];
+    all->pressure_reach = farthest > 0 ? distance->rms / farthest : distance->noise;
+}
+
 /// From the section of the first state to that of all.
 static void join_section(const struct inversion_state *state, size_t states, int k,
                          struct inversion_section *all) {
@@ -128,5 +143,6 @@ void mf_inversion_states_assess(const struct inversion_state *state, size_t stat
     }
     join_sections(state, states, all);
     join_number(state, states, TARGET_PRESSURE, &all->distance[TARGET_PRESSURE]);
+    join_reach(state, states, all);
     join_number(state, states, mf_kirkwood_buff_kind(), &all->distance[mf_kirkwood_buff_kind()]);
 }
