@@ -30,9 +30,9 @@ static struct run_program_result result;
 
 /// Densities of some types among others, in nm and ps.
 static const char mixture[] =
-    "{\"seed\": 1, \"units\": \"nm-ps\", \"box\": [2.4, 2.5, 2.6], \"time_step\": 0.01,\n"
+    "{\"seed\": 1, \"units\": \"nm-ps\", \"box\": [1.8, 1.9, 2.0], \"time_step\": 0.04,\n"
     "\"temperature\": 300, \"precision\": \"double\",\n"
-    "\"particles\": {\"types\": {\"A\": 150, \"B\": 200, \"C\": 20}, \"mass\": {\"A\": 18, \"B\": "
+    "\"particles\": {\"types\": {\"A\": 65, \"B\": 85, \"C\": 12}, \"mass\": {\"A\": 18, \"B\": "
     "30, \"C\": 10}},\n"
     "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 8, \"cutoff\": 0.6},\n"
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 20, \"cutoff\": 0.6},\n"
@@ -93,11 +93,11 @@ static const char mixture[] =
 
 /// Nearest neighbours, and those two bonds apart, count neither for the pairs nor for densities.
 static const char chains[] =
-    "{\"seed\": 2, \"box\": [5, 5, 5], \"time_step\": 0.005, \"precision\": \"double\",\n"
+    "{\"seed\": 2, \"box\": [4, 4, 4], \"time_step\": 0.02, \"precision\": \"double\",\n"
     "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.7}},\n"
-    "\"molecules\": {\"chain\": {\"count\": 40, \"exclude\": 2, \"chain\": {\"beads\": [\"A\", "
+    "\"molecules\": {\"chain\": {\"count\": 20, \"exclude\": 2, \"chain\": {\"beads\": [\"A\", "
     "\"A\", \"B\", \"A\", \"A\"], \"bond\": \"spring\"}}},\n"
-    "\"particles\": {\"types\": {\"W\": 80}},\n"
+    "\"particles\": {\"types\": {\"W\": 40}},\n"
     "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 5},\n"
     "\"many_body\": {\"crowd\": {" WEIGHT(
         0.5, 1.3) ",\n"
@@ -107,7 +107,7 @@ static const char chains[] =
                                 "    \"energy\": {\"law\": \"polynomial\", \"c2\": 0.2, "
                                 "\"origin\": 3}}},\n" MEASURE;
 
-static const char flat[] = "{\"seed\": 3, \"dimensions\": 2, \"box\": [8, 9], \"time_step\": 0.01, "
+static const char flat[] = "{\"seed\": 3, \"dimensions\": 2, \"box\": [8, 9], \"time_step\": 0.04, "
                            "\"precision\": \"double\",\n"
                            "\"particles\": {\"count\": 180},\n"
                            "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 10},\n"
@@ -181,12 +181,12 @@ static void test_plane_has_our_energies_and_forces(void **state) {
 
 // A run -----------------------------------------------------------------------------------------
 
-enum { BEADS = 648, BLOCKS = 10 };
-static const double edge = 6, inner = 0.4, outer = 1.1;
+enum { BEADS = 300, BLOCKS = 10 };
+static const double edge = 4.6416, inner = 0.4, outer = 1.1;
 
-/// A fluid whose pressure is 15 without the energy of its densities.
 static const char fluid[] =
-    "{\"seed\": 4, \"box\": [6, 6, 6], \"time_step\": 0.01, \"particles\": {\"count\": 648},\n"
+    "{\"seed\": 4, \"box\": [4.6416, 4.6416, 4.6416], \"time_step\": 0.01, \"particles\": "
+    "{\"count\": 300},\n"
     "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 15},\n"
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
     "\"many_body\": {\"crowd\": {\n"
@@ -239,7 +239,8 @@ static double density_of_dump(const char *file, double *error) {
 }
 
 /// False alarms: 4.5 standard errors each, 1e-5, of errors by ten or twenty blocks; g, whose
-/// statistics alone left 0.0096 apart, and 0.0029 in the longer form.
+/// statistics left 0.013 apart, in the longer form 0.008, most of it below 0.1, where pairs are
+/// few. Without the energy g is 0.047 apart, the pressure 15.4 and the density 6.37.
 static void test_fluid_has_our_structure_pressure_and_density(void **state) {
     char scene[2048], key[64];
     const bool is_long = length_is_long();
@@ -257,7 +258,7 @@ static void test_fluid_has_our_structure_pressure_and_density(void **state) {
         fail_msg("LAMMPS failed: see lammps/lmp.out");
     const double difference = lammps_runs_rdf_difference(1);
     print_message("rms of g - ours: %.4f\n", difference);
-    assert_true(difference < (is_long ? 0.006 : 0.02));
+    assert_true(difference < (is_long ? 0.012 : 0.025));
     for (int n = 0; n < 2; n++) {
         const char *name = n ? "weighted_density" : "pressure";
         double error;
