@@ -132,7 +132,7 @@ static void test_imc_of_a_mixture_writes_a_potential_for_each_pair_type(void **s
     check_tables(6, 4);
     check_truth();
     check_summary();
-    results_assert_table("out/history.tsv", 17, 4);
+    results_assert_table("out/history.tsv", 18, 4);
     results_assert_table("out/excess_A-B_history.tsv", 5, 20);
     assert_true(temporary_folder_exists("out/potential_A-B_flat.tsv"));
     assert_true(results_number("out/summary.json", "directions_of") > 40);

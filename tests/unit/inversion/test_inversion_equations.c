@@ -52,7 +52,7 @@ static void make(struct made *made) {
         state->variance = made->variance[s];
         state->pressure.slope = made->slope[s];
         state->pressure.value = 1;
-        state->assessment.distance[TARGET_PRESSURE].noise = pressure_error;
+        state->assessment.pressure_reach = pressure_error;
     }
     made->state[1].grid.seen[UNSEEN] = false;
 }
