@@ -158,6 +158,40 @@ static void test_an_energy_is_found_beside_the_potential(void **state) {
                  results_number("target/summary.json", "pressure"), 0.1);
 }
 
+/// "thin": {…}, the twin's in a box of this edge.
+static void add_state(struct temporary_folder *folder, const char *name, const char *edge,
+                      char *text, size_t size) {
+    char box[64], summary[64];
+    snprintf(box, sizeof box, "\"box\": [%s, %s, %s]", edge, edge, edge);
+    small_inputs_write(folder, "scene.json", twin, "\"box\": [4.64, 4.64, 4.64]", box);
+    twins_simulate("scene.json", name);
+    snprintf(summary, sizeof summary, "%s/summary.json", name);
+    const size_t length = strlen(text);
+    snprintf(text + length, size - length,
+             "%s\"%s\": {\"scene\": {%s}, \"target\": {\"rdf\": {\"file\": \"%s/rdf.tsv\"},\n"
+             "\"weighted_density\": {" CUTOFFS ", \"file\": \"%s/weighted_density.tsv\"},\n"
+             "\"pressure\": {\"value\": %.8g, \"error\": %.8g}}}",
+             length > 0 ? ",\n" : "", name, box, name, name, results_number(summary, "pressure"),
+             results_number(summary, "pressure_error"));
+}
+
+/// One f and one Φ for two densities, with pressures of 0.4 and 18. What is asked of the pressures
+/// while g is far off must not be more than the response knows.
+static void test_one_energy_is_found_for_two_densities(void **state) {
+    char states[2048] = "", text[4096];
+    add_state(*state, "thin", "5.4", states, sizeof states);
+    add_state(*state, "target", "4.127", states, sizeof states);
+    snprintf(
+        text, sizeof text,
+        "{\"seed\": 3, \"states\": {%s},\n\"scene\": {\"particles\": {\"count\": 100}, "
+        "\"time_step\": 0.01,\n\"dissipative\": {\"law\": \"power\", \"sigma\": 4.5}, " DENSITY(
+            "") "},\n" IMC ", " VERIFICATION "}\n",
+        states);
+    small_inputs_write(*state, "run.json", text, NULL, NULL);
+    run_fit("out");
+    assert_found("out/many_body_crowd.tsv", true, 0.05);
+}
+
 /// The table that LAMMPS reads has the curve that was found, between ρ of a first and a last row.
 static void test_the_energy_that_was_found_is_exported(void **state) {
     double first, last, step, f[8192] = {0};
@@ -226,6 +260,7 @@ static void test_what_cannot_be_found_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         CASE(test_an_energy_is_found_beside_the_potential),
+        CASE(test_one_energy_is_found_for_two_densities),
         CASE(test_the_energy_that_was_found_is_exported),
         CASE(test_an_energy_is_found_alone),
         CASE(test_what_cannot_be_found_is_refused),
