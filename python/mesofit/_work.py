@@ -287,7 +287,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
             range: float | None = None, bins: int | None = None, q_range: float | None = None,
             waves: int | None = None, density_profile: str | None = None,
             profile_bins: int | None = None,
-            weighted_density: tuple[float, float] | None = None, window: float | None = None,
+            weighted_density: tuple[float, ...] | None = None, window: float | None = None,
             escape: float | None = None, velocities: str | None = None, static: bool = False,
             temperature: float | None = None, units: str | None = None,
             allow_truncated: bool = False, file_units: str | None = None,
@@ -322,8 +322,9 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         Axis of the box along which the density of each type is measured.
     profile_bins : int, optional
         Of it; else 100.
-    weighted_density : two floats, optional [nm]
-        r_0 and r_c of the distribution of densities around each bead, by a weight from 1 to 0.
+    weighted_density : two or three floats, optional [nm, nm, 1]
+        r_0 and r_c of the distribution of densities around each bead, by a weight from 1 to 0, and
+        where its bins end, the same for all states that are fitted together.
     window : float, optional [ps]
         Of MSD, VACF and escape times; else a tenth of the time, 100 frames at most.
     escape : float, optional [nm]

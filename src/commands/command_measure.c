@@ -48,8 +48,8 @@ static const struct command_option options[] = {
     [WAVES] = {"--waves", "N", "most waves in a bin of S(q); else 10"},
     [PROFILE] = {"--density-profile", "x|y|z", "density of each type along an axis"},
     [PROFILE_BINS] = {"--profile-bins", "N", "its bins; else 100"},
-    [WEIGHTED] = {"--weighted-density", "R0,RC",
-                  "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]"},
+    [WEIGHTED] = {"--weighted-density", "R0,RC[,END]",
+                  "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]; 200 bins to END"},
     [WINDOW] = {"--window", "T",
                 "window of MSD, VACF, escape times [ps]; else a tenth, at most 100 frames"},
     [ESCAPE] = {"--escape", "R",
@@ -122,23 +122,30 @@ static enum status read_profile(const struct command_line *line, struct measured
     return read_count(line, PROFILE_BINS, &plan->profile_bins);
 }
 
-/// "R0,RC", the first below the second.
+/// "R0,RC", the first below the second, or "R0,RC,END" with the end of the bins.
 static enum status read_weighted(const struct command_line *line,
                                  struct weighted_density_settings *settings) {
-    enum { BINS_OF_DENSITY = 200 };
+    enum { BINS_OF_DENSITY = 200, NUMBERS = 3 };
     const char *const text = line->own[WEIGHTED];
-    char *end = NULL, *last = NULL;
+    double number[NUMBERS] = {NAN, NAN, 0};
+    int count = 0, length = 0, read = 0;
     if (text == NULL)
         return STATUS_OK;
-    settings->bins = BINS_OF_DENSITY;
-    settings->inner_cutoff = strtod(text, &end);
-    settings->cutoff = *end == ',' ? strtod(end + 1, &last) : NAN;
-    if (end > text && last > end + 1 && *last == '\0' && settings->inner_cutoff >= 0 &&
-        settings->cutoff > settings->inner_cutoff && isfinite(settings->cutoff))
+    while (count < NUMBERS && sscanf(text + length, "%lf%n", &number[count], &read) == 1) {
+        length += read;
+        count++;
+        if (text[length] != ',')
+            break;
+        length++;
+    }
+    *settings = (struct weighted_density_settings){number[0], number[1], BINS_OF_DENSITY, number[2]};
+    if (count >= 2 && text[length] == '\0' && text[length - 1] != ',' && number[0] >= 0 &&
+        number[1] > number[0] && isfinite(number[1]) &&
+        (count == 2 || (number[2] > 0 && isfinite(number[2]))))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "--weighted-density takes two distances, the first below the second, as "
-                          "0.3,0.7, not \"%.60s\"",
+                          "0.3,0.7, and perhaps the end of its bins, 0.3,0.7,40, not \"%.60s\"",
                           text);
 }
 
