@@ -3,13 +3,11 @@
 #pragma once
 
 #include "base/rng_lanes.h"
+#include "forces/pair_kernels.h"
 #include "forces/pair_mixture.h"
 #include "pair_precision.h"
 
 enum {
-    /// Pairs evaluated together; always as many, so that loops are predictable. Measured on Zen 5,
-    /// AVX-512: 64, 128, 256 and 512 make 3400, 3600, 3840 and 3790 steps/s of Lennard-Jones.
-    PAIR_BATCH = 256,
     PAIR_PIECE = 128, ///< entries of the list looked at together
     PAIR_ROOM = PAIR_BATCH + PAIR_PIECE + RNG_LANES,
     PAIR_FEW = 20, ///< entries of a particle on the list, see pair_scatter_few
@@ -36,6 +34,7 @@ struct pair_scene {
     REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
     bool has_few;               ///< particles have few pairs each
     size_t *kept;               ///< where the next pair is kept
+    size_t *held;               ///< where the next batch is held: many_body_steps.h
     struct pair_mixture mixture;
 };
 
