@@ -30,7 +30,7 @@ static const char *const precisions[MAX_PRECISIONS] = {"mixed", "double"};
 /// The scenes that ship with the program.
 static const char scenes_folder[] = "tests/bench/scenes";
 static const char *const shipped[] = {"thesis", "thesis-conservative", "standard-dpd",
-                                      "lennard-jones", "chains"};
+                                      "lennard-jones", "local-density", "chains"};
 enum { SHIPPED = sizeof shipped / sizeof *shipped };
 
 struct run {

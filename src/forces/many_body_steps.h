@@ -16,7 +16,7 @@ struct many_body_batch {
     int32_t j[PAIR_BATCH];
     REAL dx[PAIR_BATCH], dy[PAIR_BATCH], dz[PAIR_BATCH];
     REAL force_over_r[PAIR_BATCH]; ///< of Φ and friction
-    _Alignas(MEMORY_ALIGNMENT) int count;
+    int count;
     _Alignas(MEMORY_ALIGNMENT) REAL pull[][PAIR_BATCH]; ///< −w'(r)/r of each term
 };
 

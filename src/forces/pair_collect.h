@@ -15,10 +15,11 @@ enum {
 
 /// Pairs in range.
 struct pair_batch {
-    int count;
-    int32_t i[PAIR_ROOM], j[PAIR_ROOM];
+    _Alignas(MEMORY_ALIGNMENT) int32_t i[PAIR_ROOM];
+    int32_t j[PAIR_ROOM];
     int32_t id_i[PAIR_ROOM], id_j[PAIR_ROOM]; ///< where friction is kept, and in mixtures
     REAL dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
+    int count;
 };
 
 /// What stays the same from pair to pair, in a pass over one part of the list. (Not the scene of a
