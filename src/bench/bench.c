@@ -29,8 +29,8 @@ static const char *const precisions[MAX_PRECISIONS] = {"mixed", "double"};
 
 /// The scenes that ship with the program.
 static const char scenes_folder[] = "tests/bench/scenes";
-static const char *const shipped[] = {"thesis", "thesis-conservative", "standard-dpd",
-                                      "lennard-jones", "chains"};
+static const char *const shipped[] = {"thesis",        "thesis-conservative", "standard-dpd",
+                                      "lennard-jones", "local-density",       "chains"};
 enum { SHIPPED = sizeof shipped / sizeof *shipped };
 
 struct run {

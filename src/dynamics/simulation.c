@@ -114,6 +114,8 @@ enum status mf_simulation_add_interaction(struct simulation *simulation,
         if (use->state == NULL)
             return STATUS_NO_MEMORY;
     }
+    if (kind->join)
+        kind->join(use->state, &simulation->law);
     return kind->begin ? kind->begin(choice->parameters, use->state, &simulation->particles)
                        : STATUS_OK;
 }

@@ -43,6 +43,8 @@ struct interaction {
     /// Check the parameters and begin with the first positions. NULL: nothing to do.
     enum status (*begin)(const void *parameters, void *state, const struct particles *particles);
     void (*clear)(void *state); ///< frees what the state owns; NULL: nothing
+    /// Give the law of the pairs what is found and acts within their own pass. NULL: nothing.
+    void (*join)(void *state, struct pair_law *law);
     /// Add its forces to particles->force and, if they are wanted, its energy [k_B T_0] and virial
     /// Σ r·F [k_B T_0] to the sums. What pushes from outside has no virial: it is no part of the
     /// pressure. A step may take more than one pass, with the same number.

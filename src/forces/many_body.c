@@ -1,27 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Two sweeps over the pairs of each term, and one over the beads between them.
+// What the pair loop finds of densities (many_body_steps.h) becomes energies and slopes here.
 // Tested: reference/test_many_body, physics/test_many_body.
 #include "forces/many_body.h"
 
 #include "base/parallel.h"
-#include "base/simd.h"
-#include "forces/many_body_kernels.h"
+#include "forces/many_body_work.h"
 
 #include <math.h>
-
-/// Smallest and largest density of central beads since the begin.
-struct extremes {
-    double low, high;
-};
-
-struct state {
-    struct many_body_work work;
-    size_t count;
-    double *density;    ///< shape [terms, count]
-    double (*force)[4]; ///< shape [count], of a pass that is not one of all
-    struct extremes extremes[MANY_BODY_MAX_TERMS];
-};
 
 void mf_many_body_clear(struct many_body *many_body) {
     for (int t = 0; t < many_body->terms; t++) {
@@ -47,221 +33,206 @@ static double range_of(const void *parameters) {
     return range;
 }
 
+// Room --------------------------------------------------------------------------------------------
+
+static double no_value(const void *parameters, double r) {
+    (void)parameters;
+    (void)r;
+    return 0;
+}
+
+static double no_cutoff(const void *parameters) {
+    return *(const double *)parameters;
+}
+
+/// Whether all beads are central, and count.
+static bool is_for_all(const struct many_body *many_body, const struct many_body_term *term) {
+    const int types = many_body->composition.types > 1 ? many_body->composition.types : 1;
+    const uint32_t all = (1U << types) - 1;
+    return (term->central & all) == all && (term->neighbours & all) == all;
+}
+
 static enum status begin(const void *parameters, void *own, const struct particles *particles) {
+    static const struct curve_family nothing = {.value = no_value, .cutoff = no_cutoff};
     const struct many_body *many_body = parameters;
-    struct state *state = own;
-    state->count = particles->count;
-    TRY_ARRAY(state->density, particles->count * (size_t)many_body->terms);
-    TRY_ARRAY(state->work.slope, particles->count);
-    TRY_ARRAY(state->work.share, particles->count);
-    for (int t = 0; t < many_body->terms; t++)
-        state->extremes[t] = (struct extremes){INFINITY, -INFINITY};
+    struct many_body_work *work = own;
+    work->many_body = many_body;
+    work->cutoff = range_of(many_body);
+    TRY(mf_table_init_potential(&work->nothing, &(struct curve){&nothing, &work->cutoff}));
+    for (int t = 0; t < many_body->terms; t++) {
+        struct many_body_density *term = &work->term[t];
+        term->weight = &many_body->term[t].weight;
+        TRY_ARRAY(term->density, particles->count);
+        TRY_ARRAY(term->slope, particles->count);
+        if (!is_for_all(many_body, &many_body->term[t]))
+            TRY_ARRAY(term->share, particles->count);
+        work->extreme[t][0] = INFINITY;
+        work->extreme[t][1] = -INFINITY;
+    }
     return STATUS_OK;
+}
+
+static void join(void *own, struct pair_law *law) {
+    law->many_body = own;
 }
 
 static void clear(void *own) {
-    struct state *state = own;
-    mf_memory_free(state->density);
-    mf_memory_free(state->force);
-    mf_memory_free(state->work.slope);
-    mf_memory_free(state->work.share);
-    mf_memory_free(state->work.pair);
-    mf_memory_free(state->work.precise);
-    mf_memory_free(state->work.i);
-    mf_memory_free(state->work.j);
+    struct many_body_work *work = own;
+    for (int t = 0; t < MANY_BODY_MAX_TERMS; t++) {
+        mf_memory_free(work->term[t].density);
+        mf_memory_free(work->term[t].slope);
+        mf_memory_free(work->term[t].share);
+    }
+    mf_table_clear(&work->nothing);
+    mf_memory_free(work->held);
 }
 
-const double *mf_many_body_density(const void *own, int term) {
-    const struct state *state = own;
-    return state->density + (size_t)term * state->count;
-}
-
-/// Room for as many pairs as there are places on the list.
+/// Room for all pairs of the list. Most of it is never touched, and so takes no memory.
 static enum status reserve(struct many_body_work *work, const struct neighbours *neighbours,
-                           bool is_double) {
-    const size_t capacity = neighbours->list_capacity + PARTICLES_PADDING; // whole vectors
-    if (capacity <= work->capacity)
+                           enum pair_precision precision) {
+    const size_t batches =
+        neighbours->list_capacity / PAIR_BATCH + 2 * (size_t)NEIGHBOURS_MAX_PARTS;
+    work->held_size = mf_pair_held_size(precision, work->many_body->terms);
+    const size_t bytes = batches * work->held_size;
+    if (bytes <= work->capacity)
         return STATUS_OK;
-    mf_memory_free(work->pair);
-    mf_memory_free(work->precise);
-    mf_memory_free(work->i);
-    mf_memory_free(work->j);
+    mf_memory_free(work->held);
     work->capacity = 0;
-    // Most of the room is never touched, and so takes no memory.
-    work->pair = is_double ? NULL : mf_memory_uncleared(capacity, sizeof *work->pair);
-    work->precise = is_double ? mf_memory_uncleared(capacity, sizeof *work->precise) : NULL;
-    work->i = mf_memory_uncleared(capacity, sizeof *work->i);
-    work->j = mf_memory_uncleared(capacity, sizeof *work->j);
-    if ((work->pair == NULL && work->precise == NULL) || work->i == NULL || work->j == NULL)
+    work->held = mf_memory_uncleared(bytes, 1);
+    if (work->held == NULL)
         return STATUS_NO_MEMORY;
-    work->capacity = capacity;
+    work->capacity = bytes;
     return STATUS_OK;
 }
 
-/// Kernels for the instruction set in use.
-static const struct many_body_kernels *choose_set(bool is_double) {
-    switch (mf_simd_used()) {
-#if SIMD_X86
-    case SIMD_AVX512:
-        return is_double ? &mf_many_body_avx512_double : &mf_many_body_avx512;
-    case SIMD_AVX2:
-        return is_double ? &mf_many_body_avx2_double : &mf_many_body_avx2;
-#endif
-    default:
-        return is_double ? &mf_many_body_portable_double : &mf_many_body_portable;
-    }
+const double *mf_many_body_density(const void *own, int term) {
+    return ((const struct many_body_work *)own)->term[term].density;
 }
 
-/// One term of a pass.
-struct sweep {
-    const struct interaction_pass *pass;
+// Densities ---------------------------------------------------------------------------------------
+
+/// One term of all beads.
+struct beads {
+    const struct particles *particles;
     const struct composition *composition;
     const struct many_body_term *term;
-    struct many_body_work *work;
-    bool mixed; ///< not all beads are central and count
-    double (*force)[4];
+    const struct many_body_density *of;
 };
 
-static bool is_for_all(const struct sweep *sweep) {
-    const int types = sweep->composition->types > 1 ? sweep->composition->types : 1;
-    const uint32_t all = (1U << types) - 1;
-    return (sweep->term->central & all) == all && (sweep->term->neighbours & all) == all;
+static struct beads beads_of(const struct many_body_work *work, const struct particles *particles,
+                             int term) {
+    return (struct beads){particles, &work->many_body->composition, &work->many_body->term[term],
+                          &work->term[term]};
 }
 
-static bool is_of(uint32_t set, const struct sweep *sweep, size_t k) {
-    const uint32_t id = sweep->pass->particles->id[k];
-    return !sweep->mixed || set >> mf_composition_type(sweep->composition, id) & 1;
+static bool is_of(uint32_t set, const struct beads *beads, size_t k) {
+    return !beads->of->share ||
+           set >> mf_composition_type(beads->composition, beads->particles->id[k]) & 1;
 }
 
-static void prepare_beads(void *context, size_t begin, size_t end) {
-    const struct sweep *sweep = context;
+static void clear_densities(void *context, size_t begin, size_t end) {
+    const struct beads *beads = context;
     for (size_t k = begin; k < end; k++) {
-        sweep->work->density[k] = 0;
-        sweep->work->share[k] = is_of(sweep->term->neighbours, sweep, k);
+        beads->of->density[k] = 0;
+        if (beads->of->share)
+            beads->of->share[k] = is_of(beads->term->neighbours, beads, k);
     }
 }
 
 /// Σ f(ρ) of central beads, whose slopes are noted.
 static double find_energies(const void *context, size_t begin, size_t end) {
-    const struct sweep *sweep = context;
+    const struct beads *beads = context;
     double sum = 0;
     for (size_t k = begin; k < end; k++) {
-        sweep->work->slope[k] = 0;
-        if (is_of(sweep->term->central, sweep, k))
-            sum += mf_density_energy_value(&sweep->term->energy, sweep->work->density[k],
-                                           &sweep->work->slope[k]);
+        beads->of->slope[k] = 0;
+        if (is_of(beads->term->central, beads, k))
+            sum += mf_density_energy_value(&beads->term->energy, beads->of->density[k],
+                                           &beads->of->slope[k]);
     }
     return sum;
 }
 
-static void note_extremes(struct extremes *extremes, const struct sweep *sweep) {
-    for (size_t k = 0; k < sweep->pass->particles->count; k++)
-        if (is_of(sweep->term->central, sweep, k)) {
-            extremes->low = fmin(extremes->low, sweep->work->density[k]);
-            extremes->high = fmax(extremes->high, sweep->work->density[k]);
+static void note_extremes(double extreme[2], const struct beads *beads) {
+    for (size_t k = 0; k < beads->particles->count; k++)
+        if (is_of(beads->term->central, beads, k)) {
+            extreme[0] = fmin(extreme[0], beads->of->density[k]);
+            extreme[1] = fmax(extreme[1], beads->of->density[k]);
         }
 }
 
-/// All pairs of a term. A part adds to its own beads and to those of the next one: even parts never
-/// meet.
-static void add_term(struct sweep *sweep, struct pair_sums *sums) {
-    const struct interaction_pass *pass = sweep->pass;
+double mf_many_body_slopes(struct many_body_work *work, const struct particles *particles,
+                           uint64_t step) {
+    double energy = 0;
+    for (int t = 0; t < work->many_body->terms; t++) {
+        const struct beads beads = beads_of(work, particles, t);
+        energy += mf_parallel_sum(particles->count, particles->threads, find_energies, &beads);
+        if (beads.term->energy.tabulated && step > 0)
+            note_extremes(work->extreme[t], &beads);
+    }
+    return energy;
+}
+
+// In a pass ---------------------------------------------------------------------------------------
+
+/// A pass that is not one of all replaces no forces: without Φ and friction, and added.
+static void add_alone(struct many_body_work *work, const struct interaction_pass *pass) {
     struct particles *particles = pass->particles;
-    const struct neighbours *neighbours = pass->neighbours;
-    const struct many_body_kernels *kernels = choose_set(sweep->work->precise != NULL);
-    const int parts = neighbours->parts, threads = particles->threads;
-    const bool wants_sums = pass->wants == PAIR_FORCES_AND_SUMS;
-    struct transfer *transfer = pass->law->transfer;
-    double virial[NEIGHBOURS_MAX_PARTS] = {0};
-    mf_parallel_for(particles->count, threads, prepare_beads, sweep);
-    many_body_densities *densities =
-        kernels->densities[particles->box.dimensions - 2][sweep->mixed];
-    for (int first = 0; first < 2; first++) {
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
-        for (int p = first; p < parts; p += 2)
-            densities(sweep->term, sweep->work, particles, neighbours, p);
-    }
-    sums->energy += mf_parallel_sum(particles->count, threads, find_energies, sweep);
-    many_body_forces *forces = kernels->forces[sweep->mixed];
-    for (int first = 0; first < 2; first++) {
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
-        for (int p = first; p < parts; p += 2)
-            forces(sweep->work, neighbours, p, sweep->force, wants_sums ? &virial[p] : NULL,
-                   transfer ? transfer->part[p] : NULL);
-    }
-    for (int p = 0; p < parts; p++)
-        sums->virial += virial[p];
-}
-
-/// A pass that is not one of all replaces no sums: the forces are found apart, and added.
-static enum status clear_forces(struct state *state) {
-    if (state->force == NULL)
-        TRY_ARRAY(state->force, state->count);
-    memset(state->force, 0, state->count * sizeof *state->force);
-    return STATUS_OK;
-}
-
-static void give_forces(const struct state *state, struct particles *particles) {
+    const struct pair_law law = {.composition = pass->law->composition,
+                                 .precision = pass->law->precision,
+                                 .many_body = work};
+    struct pair_sums sums;
+    mf_pair_clear(particles);
+    mf_pair_add(&law, particles, pass->neighbours, pass->step, pass->wants, &sums);
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
-            particles->force[d][k] += state->force[k][d];
-}
-
-static enum status add(const void *parameters, void *own, const struct interaction_pass *pass) {
-    const struct many_body *many_body = parameters;
-    struct state *state = own;
-    struct pair_sums sums = {0};
-    TRY(reserve(&state->work, pass->neighbours, pass->particles->precise_place != NULL));
-    if (!pass->before_pairs)
-        TRY(clear_forces(state));
-    for (int t = 0; t < many_body->terms; t++) {
-        struct sweep sweep = {.pass = pass,
-                              .composition = &many_body->composition,
-                              .term = &many_body->term[t],
-                              .work = &state->work,
-                              .force = pass->before_pairs ? pass->particles->kernel_force
-                                                          : state->force};
-        sweep.mixed = !is_for_all(&sweep);
-        state->work.density = state->density + (size_t)t * state->count;
-        add_term(&sweep, &sums);
-        if (sweep.term->energy.tabulated && pass->step > 0)
-            note_extremes(&state->extremes[t], &sweep);
-    }
-    if (!pass->before_pairs)
-        give_forces(state, pass->particles);
+            particles->force[d][k] += particles->kernel_force[k][d];
     if (pass->wants == PAIR_FORCES_AND_SUMS) {
         pass->sums->energy += sums.energy;
         pass->sums->virial += sums.virial;
     }
+}
+
+/// Before the pairs: they do the rest.
+static enum status add(const void *parameters, void *own, const struct interaction_pass *pass) {
+    struct many_body_work *work = own;
+    (void)parameters;
+    TRY(reserve(work, pass->neighbours, pass->law->precision));
+    for (int p = 0; p < pass->neighbours->parts; p++)
+        work->end[p] = many_body_begin(pass->neighbours, p);
+    for (int t = 0; t < work->many_body->terms; t++) {
+        struct beads beads = beads_of(work, pass->particles, t);
+        mf_parallel_for(pass->particles->count, pass->particles->threads, clear_densities, &beads);
+    }
+    if (!pass->before_pairs)
+        add_alone(work, pass);
     return STATUS_OK;
 }
 
 static size_t spans(void *own, struct memory_span *spans) {
-    struct state *state = own;
-    spans[0] = (struct memory_span){state->extremes, sizeof state->extremes};
+    struct many_body_work *work = own;
+    spans[0] = (struct memory_span){work->extreme, sizeof work->extreme};
     return 1;
 }
 
 bool mf_many_body_was_beyond(const struct many_body *many_body, const void *own, int term,
                              double extreme[2]) {
-    const struct extremes *found = &((const struct state *)own)->extremes[term];
     const struct density_energy *energy = &many_body->term[term].energy;
-    extreme[0] = found->low;
-    extreme[1] = found->high;
-    return energy->tabulated && found->low <= found->high &&
-           (found->low < energy->low || found->high > energy->high);
+    memcpy(extreme, ((const struct many_body_work *)own)->extreme[term], 2 * sizeof *extreme);
+    return energy->tabulated && extreme[0] <= extreme[1] &&
+           (extreme[0] < energy->low || extreme[1] > energy->high);
 }
 
 const struct interaction mf_many_body = {
     .name = "many_body",
     .summary = "energies of local densities",
     .parameters_size = sizeof(struct many_body),
-    .state_size = sizeof(struct state),
+    .state_size = sizeof(struct many_body_work),
     .cost = 120,
     .range = range_of,
     .before_pairs = true,
     .begin = begin,
     .clear = clear,
+    .join = join,
     .add = add,
     .spans = spans,
 };

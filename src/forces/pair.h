@@ -51,6 +51,8 @@ struct pair_law {
     struct friction *friction; ///< keeps the pairs within the cutoff of ω instead of adding their
                                ///< friction and noise to the forces; NULL: adds them
     struct transfer *transfer; ///< whose parts r F of each pair is added to, or NULL
+    /// Local densities for whose energies the forces wait (forces/many_body_work.h), or NULL.
+    struct many_body_work *many_body;
 };
 
 /// Sums over the pairs of one pass.
@@ -78,8 +80,9 @@ void mf_pair_forces(const struct pair_law *law, struct particles *particles,
                     struct pair_sums *sums);
 
 /// @name The same in two parts, between which others may add to the sums of the kernels
-/// Empty the sums, particles->kernel_force; add the pairs, and replace `force` by the sums.
+/// Empty the sums, particles->kernel_force; add the pairs to them; replace `force` by them.
 void mf_pair_clear(struct particles *particles);
 void mf_pair_add(const struct pair_law *law, struct particles *particles,
                  const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
                  struct pair_sums *sums);
+void mf_pair_gather(struct particles *particles);

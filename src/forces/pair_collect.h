@@ -3,13 +3,11 @@
 #pragma once
 
 #include "base/rng_lanes.h"
+#include "forces/pair_kernels.h"
 #include "forces/pair_mixture.h"
 #include "pair_precision.h"
 
 enum {
-    /// Pairs evaluated together; always as many, so that loops are predictable. Measured on Zen 5,
-    /// AVX-512: 64, 128, 256 and 512 make 3400, 3600, 3840 and 3790 steps/s of Lennard-Jones.
-    PAIR_BATCH = 256,
     PAIR_PIECE = 128, ///< entries of the list looked at together
     PAIR_ROOM = PAIR_BATCH + PAIR_PIECE + RNG_LANES,
     PAIR_FEW = 20, ///< entries of a particle on the list, see pair_scatter_few
@@ -17,10 +15,11 @@ enum {
 
 /// Pairs in range.
 struct pair_batch {
-    int count;
-    int32_t i[PAIR_ROOM], j[PAIR_ROOM];
+    _Alignas(MEMORY_ALIGNMENT) int32_t i[PAIR_ROOM];
+    int32_t j[PAIR_ROOM];
     int32_t id_i[PAIR_ROOM], id_j[PAIR_ROOM]; ///< where friction is kept, and in mixtures
     REAL dx[PAIR_ROOM], dy[PAIR_ROOM], dz[PAIR_ROOM];
+    int count;
 };
 
 /// What stays the same from pair to pair, in a pass over one part of the list. (Not the scene of a
@@ -36,6 +35,7 @@ struct pair_scene {
     REAL cutoff2, near_cutoff2; ///< squared: of the law, of its dissipative part
     bool has_few;               ///< particles have few pairs each
     size_t *kept;               ///< where the next pair is kept
+    size_t *held;               ///< where the next batch is held: many_body_steps.h
     struct pair_mixture mixture;
 };
 

@@ -6,13 +6,14 @@
 
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "forces/many_body_work.h"
 
 double mf_pair_cutoff(const struct pair_law *law) {
     return fmax(law->potential ? law->potential->cutoff : 0, law->omega ? law->omega->cutoff : 0);
 }
 
 /// Kernels for the instruction set in use.
-static pair_kernels *choose_instruction_set(bool is_double) {
+static const struct pair_kernels *choose_instruction_set(bool is_double) {
     switch (mf_simd_used()) {
 #if SIMD_X86
     case SIMD_AVX512:
@@ -31,9 +32,14 @@ static pair_kernel choose_kernel(const struct pair_law *law, int dimensions) {
     const enum pair_friction friction = law->omega == NULL ? PAIR_NO_FRICTION
                                         : law->friction    ? PAIR_KEEPS_FRICTION
                                                            : PAIR_ADDS_FRICTION;
-    pair_kernels *kernels = choose_instruction_set(law->precision == PAIR_DOUBLE);
-    return (
-        *kernels)[dimensions - 2][conservative][friction][composition_is_mixed(&law->composition)];
+    const struct pair_kernels *kernels = choose_instruction_set(law->precision == PAIR_DOUBLE);
+    return kernels
+        ->all[dimensions - 2][conservative][friction][composition_is_mixed(&law->composition)];
+}
+
+size_t mf_pair_held_size(enum pair_precision precision, int terms) {
+    const struct pair_kernels *kernels = choose_instruction_set(precision == PAIR_DOUBLE);
+    return kernels->held_size + (size_t)terms * kernels->held_term_size;
 }
 
 static void clear_forces(void *context, size_t begin, size_t end) {
@@ -52,27 +58,45 @@ void mf_pair_clear(struct particles *particles) {
     mf_parallel_for(particles->count, particles->threads, clear_forces, particles);
 }
 
-void mf_pair_add(const struct pair_law *law, struct particles *particles,
-                 const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
-                 struct pair_sums *sums) {
-    const pair_kernel kernel = choose_kernel(law, particles->box.dimensions);
-    const int parts = kernel ? neighbours->parts : 0, threads = particles->threads;
-    struct pair_sums part_sums[NEIGHBOURS_MAX_PARTS] = {{0}};
-    // A part adds to its own particles and to those of the next one: even parts never meet.
+void mf_pair_gather(struct particles *particles) {
+    mf_parallel_for(particles->count, particles->threads, gather_forces, particles);
+}
+
+/// All parts of the list. A part adds to its own particles and to those of the next one: even parts
+/// never meet.
+static void sweep(pair_kernel kernel, const struct pair_law *law, struct particles *particles,
+                  const struct neighbours *neighbours, uint64_t step, struct pair_sums *part_sums) {
+    const int parts = neighbours->parts, threads = particles->threads;
     for (int first = 0; first < 2; first++) {
 #pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
         for (int p = first; p < parts; p += 2)
-            kernel(law, particles, neighbours, p, step,
-                   wants == PAIR_FORCES_AND_SUMS ? &part_sums[p] : NULL);
+            kernel(law, particles, neighbours, p, step, part_sums ? &part_sums[p] : NULL);
     }
-    mf_parallel_for(particles->count, threads, gather_forces, particles);
-    if (sums == NULL)
-        return;
-    *sums = (struct pair_sums){0};
-    for (int p = 0; p < parts; p++) {
-        sums->energy += part_sums[p].energy;
-        sums->virial += part_sums[p].virial;
+}
+
+void mf_pair_add(const struct pair_law *given, struct particles *particles,
+                 const struct neighbours *neighbours, uint64_t step, enum pair_wants wants,
+                 struct pair_sums *sums) {
+    const int dimensions = particles->box.dimensions;
+    struct pair_sums all = {0}, part_sums[NEIGHBOURS_MAX_PARTS] = {{0}};
+    struct pair_sums *wanted = wants == PAIR_FORCES_AND_SUMS ? part_sums : NULL;
+    struct pair_law law = *given;
+    if (law.many_body && law.potential == NULL)
+        law.potential = &law.many_body->nothing;
+    const pair_kernel kernel = choose_kernel(&law, dimensions);
+    if (kernel)
+        sweep(kernel, &law, particles, neighbours, step, wanted);
+    if (law.many_body) {
+        all.energy = mf_many_body_slopes(law.many_body, particles, step);
+        sweep(choose_instruction_set(law.precision == PAIR_DOUBLE)->held[dimensions - 2], &law,
+              particles, neighbours, step, wanted);
     }
+    for (int p = 0; p < neighbours->parts; p++) {
+        all.energy += part_sums[p].energy;
+        all.virial += part_sums[p].virial;
+    }
+    if (sums)
+        *sums = wanted ? all : (struct pair_sums){0};
 }
 
 void mf_pair_forces(const struct pair_law *law, struct particles *particles,
@@ -80,4 +104,5 @@ void mf_pair_forces(const struct pair_law *law, struct particles *particles,
                     struct pair_sums *sums) {
     mf_pair_clear(particles);
     mf_pair_add(law, particles, neighbours, step, wants, sums);
+    mf_pair_gather(particles);
 }

@@ -12,8 +12,20 @@
 /// there, and a processor cannot look far enough ahead to overlap several.
 #pragma once
 
-#include "pair_kernels.h"
-#include "pair_steps.h"
+#include "many_body_steps.h"
+
+/// Add the forces to the particles.
+INLINE void pair_give(struct pair_columns *columns, struct pair_batch *batch, int count,
+                      const struct pair_scene *scene, const int dim) {
+    lanes_double4 *force = (lanes_double4 *)scene->particles->kernel_force;
+    pair_vectors(columns, batch, count, dim);
+    if (scene->has_few)
+        pair_scatter_few(columns, batch, count, force);
+    else
+        pair_scatter(columns, batch, count, force);
+    if (scene->transfer)
+        pair_transfer(columns, batch, count, scene->transfer, dim);
+}
 
 /// The forces of the first `count` pairs of a batch, and their sums if they are wanted.
 INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair_scene *scene,
@@ -35,16 +47,10 @@ INLINE void pair_evaluate(struct pair_batch *batch, int count, const struct pair
         pair_noise(&columns, count, law->seed, scene->step);
         pair_dissipative(&columns, count, law, conservative);
     }
-    if (conservative || friction == PAIR_ADDS_FRICTION) {
-        pair_vectors(&columns, batch, count, dim);
-        lanes_double4 *force = (lanes_double4 *)scene->particles->kernel_force;
-        if (scene->has_few)
-            pair_scatter_few(&columns, batch, count, force);
-        else
-            pair_scatter(&columns, batch, count, force);
-        if (scene->transfer)
-            pair_transfer(&columns, batch, count, scene->transfer, dim);
-    }
+    if (conservative && scene->held)
+        many_body_hold(&columns, batch, count, scene, dim);
+    else if (conservative || friction == PAIR_ADDS_FRICTION)
+        pair_give(&columns, batch, count, scene, dim);
     if (friction == PAIR_KEEPS_FRICTION) {
         pair_ids(columns.low_id, columns.high_id, batch, count);
         pair_noise(&columns, count, law->seed, scene->step);
@@ -90,6 +96,21 @@ INLINE void pair_evaluate_rest(struct pair_batch *batch, const struct pair_scene
     evaluate(batch, batch->count, scene);
 }
 
+/// What the two loops below have in common.
+INLINE struct pair_scene pair_scene_of(const struct pair_law *law, struct particles *particles,
+                                       const struct neighbours *neighbours, int part_number,
+                                       uint64_t step, struct pair_sums *sums) {
+    const struct neighbours_part *part = &neighbours->part[part_number];
+    struct pair_scene scene = {.law = law, .particles = particles, .sums = sums, .step = step};
+    scene.has_few =
+        sizeof(REAL) == 4 && part->end - part->begin < PAIR_FEW * (part->last - part->first);
+    if (law->transfer)
+        scene.transfer = law->transfer->part[part_number];
+    if (law->many_body)
+        scene.held = &law->many_body->end[part_number];
+    return scene;
+}
+
 /// Collects the pairs in range of one part of the list in a batch, those beyond the cutoff of ω in
 /// one of their own, and evaluates a batch whenever it is full.
 /// @param[in] evaluate_near  for pairs within the cutoff of ω, or for all if there is no friction
@@ -101,21 +122,14 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
                       const enum pair_friction friction, const bool mixed) {
     const struct neighbours_part *part = &neighbours->part[part_number];
     const struct pair_histogram *histogram = law->histogram;
-    const double cutoff = mf_pair_cutoff(law);
+    const double cutoff = fmax(mf_pair_cutoff(law), many_body_cutoff(law->many_body));
     const double near_cutoff = friction != PAIR_NO_FRICTION ? law->omega->cutoff : cutoff;
-    struct pair_scene scene = {.law = law,
-                               .particles = particles,
-                               .sums = sums,
-                               .step = step,
-                               .box = pair_box_of(&particles->box),
-                               .cutoff2 = (REAL)(cutoff * cutoff),
-                               .near_cutoff2 = (REAL)(near_cutoff * near_cutoff)};
+    struct pair_scene scene = pair_scene_of(law, particles, neighbours, part_number, step, sums);
+    scene.box = pair_box_of(&particles->box);
+    scene.cutoff2 = (REAL)(cutoff * cutoff);
+    scene.near_cutoff2 = (REAL)(near_cutoff * near_cutoff);
     if (histogram)
         scene.counts = histogram->counts + (size_t)part_number * pair_histogram_size(histogram);
-    if (law->transfer)
-        scene.transfer = law->transfer->part[part_number];
-    scene.has_few =
-        sizeof(REAL) == 4 && part->end - part->begin < PAIR_FEW * (part->last - part->first);
     if (friction == PAIR_KEEPS_FRICTION)
         scene.kept = &law->friction->end[part_number];
     if (mixed)
@@ -135,6 +149,20 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
     pair_evaluate_rest(&near, &scene, evaluate_near);
     if (has_far)
         pair_evaluate_rest(&far, &scene, evaluate_far);
+}
+
+/// The pairs of a part that a pass has held: their forces, now that the densities are known.
+INLINE void pair_held_loop(const struct pair_law *law, struct particles *particles,
+                           const struct neighbours *neighbours, int part, uint64_t step,
+                           struct pair_sums *sums, const int dim) {
+    const struct pair_scene scene = pair_scene_of(law, particles, neighbours, part, step, sums);
+    for (size_t n = many_body_begin(neighbours, part); n < *scene.held; n++) {
+        const struct many_body_batch *held = many_body_at(law->many_body, n);
+        struct pair_batch batch;
+        struct pair_columns columns;
+        many_body_complete(&columns, &batch, held, &scene, dim);
+        pair_give(&columns, &batch, batch.count, &scene, dim);
+    }
 }
 
 /// An instance, and how it evaluates; `far` is the instance without friction.
@@ -170,9 +198,19 @@ INLINE void pair_loop(const struct pair_law *law, struct particles *particles,
         }                                                                                          \
     }
 
-/// All instances for one instruction set and precision, and the array from which pair_kernels.c
+/// All instances for one instruction set and precision, and the record from which pair_kernels.c
 /// chooses.
 #define PAIR_INSTANCES(set)                                                                        \
     PAIR_INSTANCES_OF(set##_2d, 2)                                                                 \
     PAIR_INSTANCES_OF(set##_3d, 3)                                                                 \
-    pair_kernels set = {PAIR_KERNELS_OF(set##_2d), PAIR_KERNELS_OF(set##_3d)};
+    static void set##_2d_held(PAIR_KERNEL_ARGUMENTS) {                                             \
+        pair_held_loop(law, particles, neighbours, part, step, sums, 2);                           \
+    }                                                                                              \
+    static void set##_3d_held(PAIR_KERNEL_ARGUMENTS) {                                             \
+        pair_held_loop(law, particles, neighbours, part, step, sums, 3);                           \
+    }                                                                                              \
+    const struct pair_kernels set = {                                                              \
+        .all = {PAIR_KERNELS_OF(set##_2d), PAIR_KERNELS_OF(set##_3d)},                             \
+        .held = {set##_2d_held, set##_3d_held},                                                    \
+        .held_size = sizeof(struct many_body_batch),                                               \
+        .held_term_size = PAIR_BATCH * sizeof(REAL)};

@@ -13,10 +13,12 @@ struct pair_places {
 
 /// What is computed from a batch, column by column.
 struct pair_columns {
-    REAL r[PAIR_BATCH], inverse_r[PAIR_BATCH];
+    _Alignas(MEMORY_ALIGNMENT) REAL r[PAIR_BATCH];
+    REAL inverse_r[PAIR_BATCH];
     struct pair_places potential, omega;
     int32_t kind[PAIR_BATCH]; ///< pair type in a mixture: mf_composition_pair
     REAL force_over_r[PAIR_BATCH];
+    REAL weight[PAIR_BATCH]; ///< of a local density
     REAL r_dot_v[PAIR_BATCH];
     int32_t low_id[PAIR_BATCH], high_id[PAIR_BATCH], noise[PAIR_BATCH];
     REAL zeta[PAIR_BATCH]; ///< of friction that is kept

@@ -10,6 +10,7 @@ static enum status add(const void *parameters, void *state, const struct interac
     if (pass->conservative)
         law.omega = NULL;
     mf_pair_add(&law, pass->particles, pass->neighbours, pass->step, pass->wants, &sums);
+    mf_pair_gather(pass->particles);
     if (pass->sums) {
         pass->sums->energy += sums.energy;
         pass->sums->virial += sums.virial;
