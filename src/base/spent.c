@@ -10,6 +10,12 @@ struct spent mf_spent(void) {
     return spent;
 }
 
+struct spent mf_spent_less(struct spent spent, struct spent less) {
+    for (int kind = 0; kind < SPENT_KINDS; kind++)
+        spent.seconds[kind] -= less.seconds[kind];
+    return spent;
+}
+
 void mf_spent_add(enum spent_on kind, double seconds) {
 #pragma omp critical(spent)
     seen.seconds[kind] += seconds;
