@@ -5,8 +5,10 @@ static struct spent seen;
 
 struct spent mf_spent(void) {
     struct spent spent;
-#pragma omp critical(spent)
-    spent = seen;
+    for (int kind = 0; kind < SPENT_KINDS; kind++) {
+#pragma omp atomic read
+        spent.seconds[kind] = seen.seconds[kind];
+    }
     return spent;
 }
 
@@ -17,7 +19,7 @@ struct spent mf_spent_less(struct spent spent, struct spent less) {
 }
 
 void mf_spent_add(enum spent_on kind, double seconds) {
-#pragma omp critical(spent)
+#pragma omp atomic
     seen.seconds[kind] += seconds;
 }
 
