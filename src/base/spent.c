@@ -5,13 +5,21 @@ static struct spent seen;
 
 struct spent mf_spent(void) {
     struct spent spent;
-#pragma omp critical(spent)
-    spent = seen;
+    for (int kind = 0; kind < SPENT_KINDS; kind++) {
+#pragma omp atomic read
+        spent.seconds[kind] = seen.seconds[kind];
+    }
+    return spent;
+}
+
+struct spent mf_spent_less(struct spent spent, struct spent less) {
+    for (int kind = 0; kind < SPENT_KINDS; kind++)
+        spent.seconds[kind] -= less.seconds[kind];
     return spent;
 }
 
 void mf_spent_add(enum spent_on kind, double seconds) {
-#pragma omp critical(spent)
+#pragma omp atomic
     seen.seconds[kind] += seconds;
 }
 

@@ -7,6 +7,8 @@ enum spent_on {
     SPENT_SAMPLES,       ///< simulating what is
     SPENT_LOST,          ///< samples that then did not count
     SPENT_ALGEBRA,       ///< what an inversion makes of its samples
+    SPENT_VERIFICATION,
+    SPENT_FIGURES, ///< by the programs that draw them
     SPENT_KINDS
 };
 
@@ -17,6 +19,9 @@ struct spent {
 
 /// What this process has spent since it began.
 struct spent mf_spent(void);
+
+/// What was spent less another amount.
+struct spent mf_spent_less(struct spent spent, struct spent less);
 
 /// Several threads may add at once.
 void mf_spent_add(enum spent_on kind, double seconds);

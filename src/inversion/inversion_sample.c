@@ -33,7 +33,8 @@ enum { FORGETTING = 4 };
 
 /// The equilibration of replicas: that of the parameters, so many times, if they begin from
 /// disorder or their memory is not known; less if they forget sooner.
-static int64_t equilibration_of(const struct inversion_state *state, int64_t stretch, bool scatter) {
+static int64_t equilibration_of(const struct inversion_state *state, int64_t stretch,
+                                bool scatter) {
     const int64_t most = state->parameters->equilibration * stretch;
     const double memory = state->work.memory;
     if (scatter)

@@ -89,7 +89,7 @@ struct inversion_state {
     double gradient;                 ///< of coefficients in its noise, when it was measured last
     struct inversion_work {
         uint64_t evaluations, sweeps; ///< so far
-        bool mixed; ///< since they were placed the replicas have agreed but for their noise
+        bool mixed;    ///< since they were placed the replicas have agreed but for their noise
         double memory; ///< sweeps from one independent sample to the next, as the last ones had
     } work;
 };

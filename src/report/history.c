@@ -146,7 +146,7 @@ static enum status write_history(const struct history *history, const struct inv
 }
 
 static enum status write_timing(const struct history *history, const struct run_folder *folder) {
-    enum { BEFORE = 3, COLUMNS = BEFORE + SPENT_KINDS + 2 };
+    enum { BEFORE = 3, COLUMNS = BEFORE + SPENT_KINDS };
     static const char *const names[COLUMNS] = {
         "iteration",       "seconds[s]", "processor_seconds[s]", "equilibration[s]", "samples[s]",
         "lost_samples[s]", "algebra[s]", "verification[s]",      "figures[s]"};
@@ -162,8 +162,6 @@ static enum status write_timing(const struct history *history, const struct run_
         values[2 * rows + k] = time->processor;
         for (size_t kind = 0; kind < SPENT_KINDS; kind++)
             values[(BEFORE + kind) * rows + k] = time->spent.seconds[kind];
-        values[(COLUMNS - 2) * rows + k] = time->verification;
-        values[(COLUMNS - 1) * rows + k] = time->figures;
     }
     for (size_t c = 0; c < COLUMNS; c++)
         columns[c] = (struct data_column){names[c], values + c * rows, c > 0 ? "%.3f" : NULL};
@@ -171,13 +169,11 @@ static enum status write_timing(const struct history *history, const struct run_
     return mf_data_table_write(path, NULL, columns, COLUMNS, rows);
 }
 
-enum status mf_history_close(struct history *history, double verification, double figures,
+enum status mf_history_close(struct history *history, struct spent spent,
                              const struct run_folder *folder) {
     if (history->iterations == 0)
         return STATUS_OK;
-    struct history_time *last = &history->times[history->iterations - 1];
-    last->verification = verification;
-    last->figures = figures;
+    history->times[history->iterations - 1].spent = spent;
     return write_timing(history, folder);
 }
 

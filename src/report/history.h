@@ -13,8 +13,7 @@
 /// Since the fit began [s]: by the clock, and of processor time of the leading process.
 struct history_time {
     double seconds, processor;
-    struct spent spent;
-    double verification, figures; ///< after the last iteration; else 0
+    struct spent spent; ///< by the last iteration also after it
 };
 
 struct history {
@@ -39,9 +38,9 @@ void mf_history_clear(struct history *history);
 enum status mf_history_add(struct history *history, const struct inverse_step *step,
                            struct history_time time) MUST_USE;
 
-/// Add what the verification and the figures have taken to the last iteration, and write
-/// timing.tsv again. Fails: as mf_history_write.
-enum status mf_history_close(struct history *history, double verification, double figures,
+/// What was spent after the last iteration, too, counts with it: write timing.tsv again. Fails: as
+/// mf_history_write. Tested: test_fit.
+enum status mf_history_close(struct history *history, struct spent spent,
                              const struct run_folder *folder) MUST_USE;
 
 /// Write the tables in these units.

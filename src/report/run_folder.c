@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/run_folder.h"
 
+#include "base/clock.h"
 #include "base/digest.h"
 #include "base/ranks.h"
+#include "base/spent.h"
 #include "io/checkpoint.h"
 #include "io/json.h"
 #include "io/tracked_file.h"
@@ -274,6 +276,8 @@ enum status mf_run_folder_state(const struct run_folder *folder, const char *nam
 }
 
 void mf_run_folder_draw(const struct run_folder *folder) {
+    const double begun = clock_children_seconds();
     if (ranks_lead() && !folder->no_figures && mf_figures_draw(folder->path) != STATUS_OK)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
+    mf_spent_add(SPENT_FIGURES, clock_children_seconds() - begun);
 }

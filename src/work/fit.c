@@ -59,11 +59,9 @@ struct run {
 };
 
 static struct history_time time_of(const struct run *run) {
-    struct history_time time = {run->seconds_before + mf_progress_seconds(&run->progress),
-                                clock_process_seconds() - run->processor_origin, mf_spent(), 0, 0};
-    for (int kind = 0; kind < SPENT_KINDS; kind++)
-        time.spent.seconds[kind] -= run->spent_origin.seconds[kind];
-    return time;
+    return (struct history_time){run->seconds_before + mf_progress_seconds(&run->progress),
+                                 clock_process_seconds() - run->processor_origin,
+                                 mf_spent_less(mf_spent(), run->spent_origin)};
 }
 
 static enum status save(struct run *run) {
@@ -84,9 +82,7 @@ static enum status load(struct run *run) {
     TRY(mf_fit_checkpoint_load(&run->checkpoint, path, run->digest));
     run->seconds_before = run->standing.time.seconds;
     run->processor_origin = clock_process_seconds() - run->standing.time.processor;
-    run->spent_origin = mf_spent();
-    for (int kind = 0; kind < SPENT_KINDS; kind++)
-        run->spent_origin.seconds[kind] -= run->standing.time.spent.seconds[kind];
+    run->spent_origin = mf_spent_less(mf_spent(), run->standing.time.spent);
     return STATUS_OK;
 }
 
@@ -360,8 +356,6 @@ static void doubt(struct run *run, const struct verification *verification) {
 /// The independent verification of the result, and everything that rests on it.
 static enum status verify_and_write(struct run *run) {
     struct verification *verification = NULL;
-    const double begun = clock_process_seconds(), drawn = clock_children_seconds();
-    double verified;
     struct verifying verifying = {run,
                                   mf_progress_begin(run->progress.quiet, run->progress.watcher)};
     verifying.progress.folder = run->progress.folder;
@@ -373,7 +367,6 @@ static enum status verify_and_write(struct run *run) {
     status =
         mf_fit_verify_states(&run->fit, run->curve, run->standing.number, &listener, verification);
     mf_task_log_use(NULL);
-    verified = clock_process_seconds();
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);
     CHECK(status);
@@ -386,8 +379,7 @@ static enum status verify_and_write(struct run *run) {
         CHECK(mf_fit_verify_write(&run->fit, s, &verification[s], &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
     mf_run_folder_draw(&run->folder);
-    CHECK(mf_history_close(&run->history, verified - begun, clock_children_seconds() - drawn,
-                           &run->folder));
+    CHECK(mf_history_close(&run->history, time_of(run).spent, &run->folder));
     mf_fit_report_print(&run->progress, &run->fit, &run->unknowns, &result);
     for (size_t s = 0; s < states; s++)
         if (verification[s].warning[0])

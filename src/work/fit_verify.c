@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit_verify.h"
 
+#include "base/clock.h"
+#include "base/spent.h"
 #include "defaults/fit_states.h"
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
@@ -102,6 +104,7 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
                                  const struct inverse_listener *listener,
                                  struct verification *verification) {
     const size_t states = mf_fit_states_count(fit);
+    const double begun = clock_process_seconds();
     struct sharing sharing = {.listener = listener};
     const struct inverse_listener of_state = {report_of_state, &sharing};
     for (size_t s = 0; s < states; s++)
@@ -112,6 +115,7 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
         TRY(verify_state(state, curve, number, &of_state, &verification[s]));
         sharing.before += sharing.here;
     }
+    mf_spent_add(SPENT_VERIFICATION, clock_process_seconds() - begun);
     return STATUS_OK;
 }
 

@@ -173,11 +173,33 @@ static void test_phi_is_known_no_better_than_the_counts_of_its_target(void **sta
     mf_data_table_clear(&found);
 }
 
+/// Samples, equilibration and algebra are what the processor did up to the last iteration, but for
+/// files; the verification, of 2000 samples and more, comes after it.
+static void test_timing_says_what_the_time_went_to(void **state) {
+    static const char *const parts[] = {"equilibration", "samples", "lost_samples", "algebra"};
+    struct data_table timing;
+    double sum = 0;
+    run_fit(*state, "\"method\": {\"name\": \"imc\", \"replicas\": 2, \"iterations\": 2}",
+            (const char *[]){"out", "--threads", "1"});
+    read_table(&timing, "out/timing.tsv");
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        assert_true(last(&timing, parts[k], 0) >= last(&timing, parts[k], 1));
+        sum += last(&timing, parts[k], 0);
+    }
+    assert_true(last(&timing, "equilibration", 0) > 0 && last(&timing, "algebra", 0) > 0);
+    assert_true(last(&timing, "samples", 0) + last(&timing, "lost_samples", 0) > 0);
+    assert_true(sum <= last(&timing, "processor_seconds", 0) + 0.002);
+    assert_true(last(&timing, "verification", 0) > 0 && last(&timing, "verification", 1) == 0);
+    mf_data_table_clear(&timing);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(
             test_samples_of_the_last_iteration_have_the_rms_of_the_history,
             small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_timing_says_what_the_time_went_to,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_energy_is_that_of_the_verification,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_excess_of_each_iteration_has_a_column,
