@@ -12,12 +12,17 @@
 /// By which rounding may change a number of the file.
 static const double rounding = 1e-4;
 
-/// The local density whose energy is to be found, or −1.
-static int find_term(const struct scene_many_body *many_body) {
-    for (int t = 0; many_body->law && t < many_body->law->terms; t++)
+/// The next local density after one whose energy is to be found, or −1.
+static int find_next(const struct scene_many_body *many_body, int after) {
+    for (int t = after + 1; many_body->law && t < many_body->law->terms; t++)
         if (scene_many_body_is_fitted(many_body, t))
             return t;
     return -1;
+}
+
+/// The first of them: there is one target to find an energy from.
+static int find_term(const struct scene_many_body *many_body) {
+    return find_next(many_body, -1);
 }
 
 static struct weighted_density_settings *settings_of(struct fit_file *fit) {
@@ -114,9 +119,13 @@ enum status mf_fit_densities_read(struct fit_file *fit, struct json_object *root
         return STATUS_OK;
     const struct target_curve *curve = target_files_curve(&fit->files, kind);
     struct weighted_density_settings *settings = settings_of(fit);
-    const char *name = fit->scene.many_body.law->term[t].name;
+    const int other = find_next(&fit->scene.many_body, t);
+    const char *name = fit->scene.many_body.law->term[other < 0 ? t : other].name;
     const char *why = NULL;
-    if (curve->points == 0 || settings == NULL || fit->files.use[kind].fitted == 0)
+    if (other >= 0)
+        why = "that of another density is found from \"target.weighted_density\"; give it, or leave "
+              "this density out";
+    else if (curve->points == 0 || settings == NULL || fit->files.use[kind].fitted == 0)
         why = "there is no \"target.weighted_density\" to find it from; measure it, or give "
               "\"energy\"";
     else if (!is_that_of_target(fit, t, settings))

@@ -206,17 +206,29 @@ static const char *name_of(const struct fit_file *fit, size_t g) {
     return mf_group_kind_group(&fit->problem.scene, &fit->problem.group[g]);
 }
 
+/// Whether a group means the same in two states: one f(ρ) is of densities by one weight.
+static bool is_alike(const struct fit_file *fit, const struct fit_file *other, size_t g) {
+    const struct bonded_unknown *first = &fit->problem.group[g], *second = &other->problem.group[g];
+    if (first->order != second->order || strcmp(name_of(fit, g), name_of(other, g)) != 0)
+        return false;
+    if (first->order != INVERSE_LOCAL_DENSITY)
+        return true;
+    const struct weight_table *a = &fit->scene.many_body.law->term[first->group].weight;
+    const struct weight_table *b = &other->scene.many_body.law->term[second->group].weight;
+    const double apart = fmax(fabs(weight_cutoff(a) - weight_cutoff(b)), fabs(a->inner - b->inner));
+    return apart < 1e-6 * weight_cutoff(a);
+}
+
 static enum status check_groups(const struct fit_file *fit, const struct fit_file *other,
                                 const char *file) {
     bool same = fit->problem.bonded == other->problem.bonded;
     for (size_t g = 0; same && g < fit->problem.bonded; g++)
-        same = fit->problem.group[g].order == other->problem.group[g].order &&
-               strcmp(name_of(fit, g), name_of(other, g)) == 0;
+        same = is_alike(fit, other, g);
     if (same)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: states.%s: the bonds, angles and dihedrals that it has targets for, "
-                          "and no laws, are not those of \"%s\"",
+                          "%s: states.%s: the bonds, angles, dihedrals and local densities that it "
+                          "has targets for, and no laws, are not those of \"%s\"",
                           file, other->name, fit->name);
 }
 

@@ -39,6 +39,12 @@ static const char twin[] =
 #define VERIFICATION                                                                               \
     "\"verification\": {\"replicas\": 2, \"equilibration\": 500, \"samples\": 200, \"every\": 10}"
 
+/// A second state whose ρ is another one.
+#define OTHER_WEIGHT                                                                               \
+    "\"states\": {\"one\": {\"scene\": {\"temperature\": 1}}, \"two\": {\n"                         \
+    "\"scene\": {\"many_body\": {\"crowd\": {\"weight\": {\"cutoff\": 1}}}},\n"                       \
+    "\"target\": {\"weighted_density\": {\"cutoff\": 1}}}}"
+
 /// A fit of g(r), p(ρ) and the pressure of the twin.
 static void write_fit(struct temporary_folder *folder, const char *from, const char *to) {
     char text[4096];
@@ -244,10 +250,16 @@ static void test_what_cannot_be_found_is_refused(void **state) {
     assert_refused(*state, DENSITY(""),
                    "\"many_body\": {\"crowd\": {\"weight\": {\"law\": \"lucy\", \"cutoff\": 1.2}}}",
                    "many_body.crowd has no \"energy\": it is found from");
+    assert_refused(*state, "\"many_body\": {",
+                   "\"many_body\": {\"first\": {\"weight\": {\"law\": \"sanyal-shell\", " CUTOFFS
+                   "}}, ",
+                   "many_body.crowd has no \"energy\": that of another density is found");
     assert_refused(*state, P_OF_RHO ",", "",
                    "many_body.crowd has no \"energy\": there is no \"target.weighted_density\"");
     assert_refused(*state, "\"rdf\": {", "\"rdf\": {\"cutoff\": 1, ",
                    "target.rdf: it ends at 1, before the weight of \"scene.many_body.crowd\"");
+    assert_refused(*state, VERIFICATION, VERIFICATION ", " OTHER_WEIGHT,
+                   "states.two: the bonds, angles, dihedrals and local densities");
     small_inputs_write(*state, "scene.json", twin, TRUTH, "");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "refused");
     run_program_assert_refused(&result, "refused", "energy", 1,
