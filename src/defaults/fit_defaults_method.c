@@ -172,7 +172,7 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
 /// How many samples of each replica make the noise of g such a part of what the errors of target
 /// and method make. With half of it the rms of g − g* is known within a tenth.
 static double samples_for_rdf(const struct fit_choice *c, double replicas, double part) {
-    static const double inefficiency = 1.5; // with 2 twenty systems knew it within 0.078
+    static const double inefficiency = 2;
     const double wanted = part * hypot(c->scales.noise, c->precision);
     const double noise =
         mf_fit_scales_noise_of_sample(c->rdf, &c->read->scene.setup.box, c->count, c->range);
@@ -198,9 +198,7 @@ static double given_or(const struct fit_choice *c, const char *key, int64_t give
 }
 
 enum status mf_fit_defaults_verification(struct fit_choice *c) {
-    // A Lennard-Jones liquid at its triple point has molten after five crossings, and SPC water
-    // after two; what has not is seen, and goes on (problem/verify_equilibrium.h).
-    static const double apart = 0.1, equilibration = 5, min = 50, windows = 20;
+    static const double apart = 0.1, equilibration = 10, min = 50, windows = 20;
     static const double max_moves = 3e8, few_moves = 1e8, exact = 0.5, enough = 1;
     const char *path = "verification";
     enum target_kind longest;
@@ -209,7 +207,7 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
     const double replicas = given_or(c, "replicas", read->replicas, 4);
     const double every =
         given_or(c, "every", read->plan.every, fmax(1, round(apart * c->crossing / time_step)));
-    const double begin = fmax(500, ceil(equilibration * c->crossing / time_step));
+    const double begin = fmax(1000, ceil(equilibration * c->crossing / time_step));
     const double window =
         (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);
     const double sample = replicas * c->count * every;

@@ -20,8 +20,8 @@ const struct field mf_inversion_fields[] = {
      .maximum = REPLICAS_MAX, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 64, .minimum = 0,
      .maximum = 8e8, .unit = "sweeps",
-     .help = "first equilibration, twofold from a random start; later as long as samples "
-             "remember, if that is less; prolonged until they are stationary"},
+     .help = "least equilibration, five-fold from a random start; prolonged until samples are "
+             "stationary"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 64, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
      .help = "least samples of each replica; doubled until the noise is \"precision\" or half "

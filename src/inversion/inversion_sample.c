@@ -19,9 +19,8 @@ static const double gradient_of_noise = 2;
 /// Samples of an iteration double at most so often.
 enum { MAX_DOUBLINGS = 9 };
 
-/// Replicas that begin from disorder are equilibrated so many times as long. It is hardly ever too
-/// short: samples that drift are equilibration, too.
-enum { DISORDER_EQUILIBRATION = 2 };
+/// Replicas that begin from disorder are equilibrated so many times as long.
+enum { DISORDER_EQUILIBRATION = 5 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
 /// not settled.
