@@ -8,7 +8,7 @@
 # and the part of README.md between its marks are replaced.
 #
 # PROGRAM  default: build/mesofit
-# OUT      results, table.tsv, table.md, notes.md and standard-set.png; default: out beside this script
+# OUT      results, table.tsv, table.md, time.md, notes.md and standard-set.png; default: out beside this script
 # SEED     of the fits, instead of that of the program
 # THREADS  default: 2
 # LIMIT    seconds of processor time a system; default: 960, eight minutes of two cores
@@ -166,6 +166,11 @@ done >"$out/notes.md"
 awk -f "$here/markdown.awk" "$out/table.tsv" >"$out/table.md"
 MESOFIT_PLOTS=$here/../../plots MESOFIT_TABLE=$out/table.tsv MESOFIT_FIGURE=$out/standard-set.png gnuplot "$here/standard-set.gp"
 cat "$out/table.md"
+ended=()
+for name in $systems; do
+    [ ! -e "$out/$name/ended" ] || [ ! -e "$out/$name/fit/summary.json" ] || ended+=("$out/$name/fit")
+done
+"$here/time.sh" "${ended[@]}" >"$out/time.md"
 if [ -n "$all" ] && [ -z "$seed" ] && [ -z "${TABLE:-}" ]; then
     cp "$out/table.tsv" "$out/standard-set.png" "$here"
     awk -v table="$out/table.md" -v notes="$out/notes.md" '
