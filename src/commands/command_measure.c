@@ -48,8 +48,9 @@ static const struct command_option options[] = {
     [WAVES] = {"--waves", "N", "most waves in a bin of S(q); else 10"},
     [PROFILE] = {"--density-profile", "x|y|z", "density of each type along an axis"},
     [PROFILE_BINS] = {"--profile-bins", "N", "its bins; else 100"},
-    [WEIGHTED] = {"--weighted-density", "R0,RC[,END]",
-                  "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]; 200 bins to END"},
+    [WEIGHTED] =
+        {"--weighted-density", "R0,RC[,END]",
+         "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]; 200 bins to END"},
     [WINDOW] = {"--window", "T",
                 "window of MSD, VACF, escape times [ps]; else a tenth, at most 100 frames"},
     [ESCAPE] = {"--escape", "R",
@@ -138,7 +139,8 @@ static enum status read_weighted(const struct command_line *line,
             break;
         length++;
     }
-    *settings = (struct weighted_density_settings){number[0], number[1], BINS_OF_DENSITY, number[2]};
+    *settings =
+        (struct weighted_density_settings){number[0], number[1], BINS_OF_DENSITY, number[2]};
     if (count >= 2 && text[length] == '\0' && text[length - 1] != ',' && number[0] >= 0 &&
         number[1] > number[0] && isfinite(number[1]) &&
         (count == 2 || (number[2] > 0 && isfinite(number[2]))))

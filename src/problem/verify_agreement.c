@@ -193,8 +193,8 @@ static void assess_number(const struct targets *targets, int kind, const struct 
     if (target->count != 1 || !isfinite(observed->value[kind][0]))
         return;
     agreement->distance = mf_targets_distance(target, observed->value[kind], observed->error[kind]);
-    agreement->distance.noise = hypot(known_or_0(target->error[0]),
-                                      sqrt(1 + share) * known_or_0(observed->error[kind][0]));
+    agreement->distance.noise =
+        hypot(known_or_0(target->error[0]), sqrt(1 + share) * known_or_0(observed->error[kind][0]));
 }
 
 void mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
