@@ -123,8 +123,9 @@ enum status mf_fit_densities_read(struct fit_file *fit, struct json_object *root
     const char *name = fit->scene.many_body.law->term[other < 0 ? t : other].name;
     const char *why = NULL;
     if (other >= 0)
-        why = "that of another density is found from \"target.weighted_density\"; give it, or leave "
-              "this density out";
+        why =
+            "that of another density is found from \"target.weighted_density\"; give it, or leave "
+            "this density out";
     else if (curve->points == 0 || settings == NULL || fit->files.use[kind].fitted == 0)
         why = "there is no \"target.weighted_density\" to find it from; measure it, or give "
               "\"energy\"";

@@ -41,8 +41,8 @@ static const char twin[] =
 
 /// A second state whose ρ is another one.
 #define OTHER_WEIGHT                                                                               \
-    "\"states\": {\"one\": {\"scene\": {\"temperature\": 1}}, \"two\": {\n"                         \
-    "\"scene\": {\"many_body\": {\"crowd\": {\"weight\": {\"cutoff\": 1}}}},\n"                       \
+    "\"states\": {\"one\": {\"scene\": {\"temperature\": 1}}, \"two\": {\n"                        \
+    "\"scene\": {\"many_body\": {\"crowd\": {\"weight\": {\"cutoff\": 1}}}},\n"                    \
     "\"target\": {\"weighted_density\": {\"cutoff\": 1}}}}"
 
 /// A fit of g(r), p(ρ) and the pressure of the twin.
