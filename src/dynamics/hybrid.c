@@ -22,7 +22,8 @@ enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct pair_histogram *bins, double temperature, uint64_t seed) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)mf_composition_particles(composition);
-    const struct hybrid_step step = mf_hybrid_step_find(potential, molecules, temperature);
+    const struct hybrid_step step =
+        mf_hybrid_step_find(potential, molecules, many_body, temperature);
     const struct respa_parameters respa = {step.inner};
     struct simulation_setup setup = {
         .box = *box,

@@ -9,8 +9,8 @@ static const double first_share = 0.4, highest = 10;
 /// A step goes no further than this share of the cutoff at the thermal velocity, however soft.
 static const double longest_flight = 0.05;
 
-static double longest_step(const struct table *potential, double temperature) {
-    return longest_flight * potential->cutoff / sqrt(temperature);
+static double longest_step(double cutoff, double temperature) {
+    return longest_flight * cutoff / sqrt(temperature);
 }
 
 /// 2 Φ'' where the curve of a pair type bends most, as far up as ten k_B T reach.
@@ -33,7 +33,7 @@ static double first_of_pairs(const struct table *potential, double temperature) 
     double fastest = 0;
     for (int curve = 0; curve < potential->curves; curve++)
         fastest = fmax(fastest, fastest_of(potential, curve, temperature));
-    return fmin(first_share / sqrt(fastest), longest_step(potential, temperature));
+    return fmin(first_share / sqrt(fastest), longest_step(potential->cutoff, temperature));
 }
 
 // Molecules ---------------------------------------------------------------------------------------
@@ -86,15 +86,24 @@ double mf_hybrid_step_fastest(const struct molecules *molecules, double temperat
     return fastest;
 }
 
+static double shortest_weight(const struct many_body *many_body) {
+    double shortest = INFINITY;
+    for (int t = 0; t < many_body->terms; t++)
+        shortest = fmin(shortest, weight_cutoff(&many_body->term[t].weight));
+    return shortest;
+}
+
 struct hybrid_step mf_hybrid_step_find(const struct table *potential,
-                                       const struct molecules *molecules, double temperature) {
+                                       const struct molecules *molecules,
+                                       const struct many_body *many_body, double temperature) {
     static const double share = 0.15; // of many oscillators, all of which must be taken at once
     enum { MAX = 10 };                // half a period is 20 of them
     struct hybrid_step step = {.first = INFINITY, .longest = INFINITY, .inner = 1};
     if (potential) {
         step.first = first_of_pairs(potential, temperature);
-        step.longest = longest_step(potential, temperature);
-    }
+        step.longest = longest_step(potential->cutoff, temperature);
+    } else if (many_body)
+        step.first = step.longest = longest_step(shortest_weight(many_body), temperature);
     if (molecules == NULL)
         return step;
     const double fast = share / sqrt(mf_hybrid_step_fastest(molecules, temperature));

@@ -4,6 +4,7 @@
 
 #include "curves/table.h"
 #include "dynamics/integrator.h"
+#include "forces/many_body.h"
 #include "forces/molecules.h"
 
 struct hybrid_step {
@@ -30,7 +31,8 @@ double mf_hybrid_step_wrong(const struct integrator *integrator);
 /// ω² of the fastest group of molecules of mass 1 [1/τ²].
 double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature);
 
-/// By the fastest pairs and the fastest terms of molecules of mass 1. Either may be NULL. Tested:
-/// test_hybrid.
+/// By the fastest pairs and the fastest terms of molecules of mass 1; without pairs, by the range
+/// of local densities. Each may be NULL. Tested: test_hybrid.
 struct hybrid_step mf_hybrid_step_find(const struct table *potential,
-                                       const struct molecules *molecules, double temperature);
+                                       const struct molecules *molecules,
+                                       const struct many_body *many_body, double temperature);

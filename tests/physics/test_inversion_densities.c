@@ -51,7 +51,8 @@ static void measure(double c, bool found, struct inversion *inversion) {
                                             .iterations = 1,
                                             .precision = 1,
                                             .sampler = SAMPLER_AUTO};
-    struct inverse_problem problem = {
+    static struct inverse_problem problem; // the grid of an inversion points to its groups
+    problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.05, BINS}, .target[TARGET_RDF] = {BINS, g, no_errors, 0}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {&potential}},
         .scene = fluid.setup,

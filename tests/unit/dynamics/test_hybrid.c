@@ -3,6 +3,7 @@
 
 #include "curves/formula.h"
 #include "shared/is_close.h"
+#include "shared/many_bodies.h"
 #include "shared/testing.h"
 
 enum { PAIRS = 3, COUNT = 200 };
@@ -46,9 +47,24 @@ static void test_hybrid_begins_with_the_step_of_the_stiffest_pairs(void **state)
     mf_table_clear(&stiff);
 }
 
+/// Without pairs it is a share of the weight's range, over which the forces change.
+static void test_hybrid_of_local_densities_alone_has_a_step(void **state) {
+    (void)state;
+    const struct composition one = mf_composition_of_one(COUNT);
+    struct many_body law;
+    struct hybrid hybrid;
+    many_bodies_crowd(&law, 0.5, 1.2, 1, 2, &one);
+    assert_ok(
+        mf_hybrid_init(&hybrid, &box, &one, NULL, NULL, &law, &(struct pair_histogram){0}, 1, 3));
+    assert_true(hybrid.simulation.setup.time_step > 0.01 && hybrid.longest < 0.12);
+    mf_hybrid_clear(&hybrid);
+    mf_many_body_clear(&law);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hybrid_begins_with_the_step_of_the_stiffest_pairs),
+        cmocka_unit_test(test_hybrid_of_local_densities_alone_has_a_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
