@@ -275,9 +275,12 @@ enum status mf_run_folder_state(const struct run_folder *folder, const char *nam
     return mf_output_make_folder(state->path);
 }
 
-void mf_run_folder_draw(const struct run_folder *folder) {
+bool mf_run_folder_draw(const struct run_folder *folder) {
     const double begun = clock_children_seconds();
-    if (ranks_lead() && !folder->no_figures && mf_figures_draw(folder->path) != STATUS_OK)
+    const bool drawn =
+        !ranks_lead() || folder->no_figures || mf_figures_draw(folder->path) == STATUS_OK;
+    if (!drawn)
         fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
     mf_spent_add(SPENT_FIGURES, clock_children_seconds() - begun);
+    return drawn;
 }

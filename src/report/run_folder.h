@@ -85,5 +85,5 @@ enum status mf_run_folder_state(const struct run_folder *folder, const char *nam
 enum status mf_run_folder_check_state(struct run_folder *folder, const char *name) MUST_USE;
 
 /// Draw the figures of the folder, unless the options say that there are to be none; what fails is
-/// a warning on stderr.
-void mf_run_folder_draw(const struct run_folder *folder);
+/// a warning on stderr, and false is returned.
+bool mf_run_folder_draw(const struct run_folder *folder);

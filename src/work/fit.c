@@ -377,9 +377,12 @@ static enum status verify_and_write(struct run *run) {
     CHECK(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     for (size_t s = 0; s < states; s++)
         CHECK(mf_fit_verify_write(&run->fit, s, &verification[s], &run->folder));
-    CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
-    mf_run_folder_draw(&run->folder);
     CHECK(mf_history_close(&run->history, time_of(run).spent, &run->folder));
+    CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
+    // The fit is whole: what its figures took is not worth an error.
+    if (mf_run_folder_draw(&run->folder) &&
+        mf_history_close(&run->history, time_of(run).spent, &run->folder) != STATUS_OK)
+        mf_progress_print(&run->progress, "mesofit: warning: %s", mf_status_message());
     mf_fit_report_print(&run->progress, &run->fit, &run->unknowns, &result);
     for (size_t s = 0; s < states; s++)
         if (verification[s].warning[0])
