@@ -58,11 +58,15 @@ static enum status check_bins(const struct target_curve *curve) {
                                   "%s: expected the middles of equal bins from 0, as "
                                   "weighted_density.tsv has them; row %zu is at %g",
                                   curve->parameters.file, k + 1, curve->x[k]);
+        if (curve->value[k] < 0)
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: row %zu: p = %g is not a distribution",
+                                  curve->parameters.file, k + 1, curve->value[k]);
         sum += isfinite(curve->value[k]) ? curve->value[k] * width : 0;
     }
     if (fabs(sum - 1) < 0.01)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s: the integral of p is %.4g, not 1",
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: the integral of p over the rows without nan is %.4g, not 1",
                           curve->parameters.file, sum);
 }
 
@@ -112,6 +116,21 @@ enum status mf_fit_densities_widen(struct fit_file *fit, size_t bins) {
     return STATUS_OK;
 }
 
+/// Why the energy of a term cannot be found from the target; NULL if it can.
+static const char *find_fault(const struct fit_file *fit, int t, const struct target_curve *curve,
+                              const struct weighted_density_settings *settings) {
+    if (curve->points == 0 || settings == NULL)
+        return "there is no \"target.weighted_density\" to find it from; measure it, or give "
+               "\"energy\"";
+    if (fit->files.use[mf_weighted_density_kind()].fitted == 0)
+        return "\"target.weighted_density\", which it is found from, has \"fitted\": \"no\"; leave "
+               "that out, or give \"energy\"";
+    if (!is_that_of_target(fit, t, settings))
+        return "it is found from \"target.weighted_density\", that of all beads by the weight "
+               "\"sanyal-shell\" with the same cutoffs";
+    return NULL;
+}
+
 enum status mf_fit_densities_read(struct fit_file *fit, struct json_object *root) {
     const char *const key = "scene";
     const int kind = mf_weighted_density_kind(), t = find_term(&fit->scene.many_body);
@@ -121,17 +140,9 @@ enum status mf_fit_densities_read(struct fit_file *fit, struct json_object *root
     struct weighted_density_settings *settings = settings_of(fit);
     const int other = find_next(&fit->scene.many_body, t);
     const char *name = fit->scene.many_body.law->term[other < 0 ? t : other].name;
-    const char *why = NULL;
-    if (other >= 0)
-        why =
-            "that of another density is found from \"target.weighted_density\"; give it, or leave "
-            "this density out";
-    else if (curve->points == 0 || settings == NULL || fit->files.use[kind].fitted == 0)
-        why = "there is no \"target.weighted_density\" to find it from; measure it, or give "
-              "\"energy\"";
-    else if (!is_that_of_target(fit, t, settings))
-        why = "it is found from \"target.weighted_density\", that of all beads by the weight "
-              "\"sanyal-shell\" with the same cutoffs";
+    const char *why = other >= 0 ? "that of another density is found from "
+                                   "\"target.weighted_density\"; give it, or leave this density out"
+                                 : find_fault(fit, t, curve, settings);
     if (why) {
         mf_json_fault(root, key, "many_body.%s has no \"energy\": %s", name, why);
         return STATUS_OK;

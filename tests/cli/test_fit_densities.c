@@ -256,6 +256,10 @@ static void test_what_cannot_be_found_is_refused(void **state) {
                    "many_body.crowd has no \"energy\": that of another density is found");
     assert_refused(*state, P_OF_RHO ",", "",
                    "many_body.crowd has no \"energy\": there is no \"target.weighted_density\"");
+    assert_refused(*state, P_OF_RHO,
+                   "\"weighted_density\": {\"fitted\": \"no\", " CUTOFFS
+                   ", \"file\": \"target/weighted_density.tsv\"}",
+                   "which it is found from, has \"fitted\": \"no\"");
     assert_refused(*state, "\"rdf\": {", "\"rdf\": {\"cutoff\": 1, ",
                    "target.rdf: it ends at 1, before the weight of \"scene.many_body.crowd\"");
     assert_refused(*state, VERIFICATION, VERIFICATION ", " OTHER_WEIGHT,
