@@ -384,11 +384,7 @@ static enum status verify_and_write(struct run *run) {
         mf_history_close(&run->history, time_of(run).spent, &run->folder) != STATUS_OK)
         mf_progress_print(&run->progress, "mesofit: warning: %s", mf_status_message());
     mf_fit_report_print(&run->progress, &run->fit, &run->unknowns, &result);
-    for (size_t s = 0; s < states; s++)
-        if (verification[s].warning[0])
-            mf_progress_print(&run->progress, "mesofit: warning: %s%s%s",
-                              mf_fit_states_at(&run->fit, s)->name, run->fit.name[0] ? ": " : "",
-                              verification[s].warning);
+    mf_fit_print_warnings(&run->progress, &run->fit, verification);
     mf_fit_closing_print(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);
     status = result.status;
     if (status == STATUS_UNCONVERGED)

@@ -160,3 +160,12 @@ void mf_fit_print_unconverged(const struct fit_file *fit, const char *folder,
     if (!doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
         mf_units_add_to_message(&fit->scene.units, STATUS_UNCONVERGED);
 }
+
+void mf_fit_print_warnings(struct progress *to, const struct fit_file *fit,
+                           const struct verification *verification) {
+    for (size_t s = 0; s <= fit->others; s++)
+        if (verification[s].warning[0])
+            mf_progress_print(to, "mesofit: warning: %s%s%s",
+                              s == 0 ? fit->name : fit->other[s - 1].name, fit->name[0] ? ": " : "",
+                              verification[s].warning);
+}

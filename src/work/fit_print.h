@@ -23,6 +23,11 @@ enum status mf_fit_print_targets(struct progress *to, const struct fit_file *fit
 enum status mf_fit_print_state(const struct fit_file *fit,
                                const struct target_sanity_listener *listener) MUST_USE;
 
+/// What the verification of each state warns of.
+/// @param[in] verification  shape [states]
+void mf_fit_print_warnings(struct progress *to, const struct fit_file *fit,
+                           const struct verification *verification);
+
 /// The message of a fit that has not converged. A method without an error and without a reason has
 /// not measured anything.
 /// @param[in] doubted  by the verification, whose reason this is

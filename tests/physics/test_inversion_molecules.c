@@ -280,8 +280,8 @@ static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
 
 /// The bands of four fits are as wide as they should be. Of 152 twins off over stated is 1.00(3),
 /// both groups together, and its square scatters as that of 5.1 independent numbers: of four twins
-/// below 0.5 in 2 of 10,000 cases, above 1.6 in 1.4. In short two of them: below 0.4 in 13 of 10,000,
-/// above 1.8 in 3.
+/// below 0.5 in 2 of 10,000 cases, above 1.6 in 1.4. In short two of them: below 0.4 in 13 of
+/// 10,000, above 1.8 in 3.
 static void test_relative_entropy_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
     const uint64_t fits = length_is_long() ? 4 : 2;
