@@ -54,10 +54,12 @@ static enum status check_bins(const struct target_curve *curve) {
     double sum = 0;
     for (size_t k = 0; k < curve->points; k++) {
         if (!are_equal(curve->x[k], ((double)k + 0.5) * width))
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: expected the middles of equal bins from 0, as "
-                                  "weighted_density.tsv has them; row %zu is at %g",
-                                  curve->parameters.file, k + 1, curve->x[k]);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: expected the middles of equal bins from 0, as "
+                "weighted_density.tsv has them, those of p = 0 too; row %zu is at %g, "
+                "and %g was expected, after a first one at %g",
+                curve->parameters.file, k + 1, curve->x[k], ((double)k + 0.5) * width, curve->x[0]);
         if (curve->value[k] < 0)
             return mf_status_fail(STATUS_BAD_INPUT, "%s: row %zu: p = %g is not a distribution",
                                   curve->parameters.file, k + 1, curve->value[k]);
@@ -65,9 +67,12 @@ static enum status check_bins(const struct target_curve *curve) {
     }
     if (fabs(sum - 1) < 0.01)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: the integral of p over the rows without nan is %.4g, not 1",
-                          curve->parameters.file, sum);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: the integral of p over the rows without nan is %.4g, not 1: counts are "
+        "divided by their sum and by the width of a bin, and bins reach beyond "
+        "the densest bead",
+        curve->parameters.file, sum);
 }
 
 /// What was never seen, or not often enough for an error, has that of what was seen least.
