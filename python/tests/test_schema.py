@@ -33,6 +33,12 @@ FILES = sorted(path for folder in ("runs", "examples", "tests/bench", "tests/fuz
                for path in (ROOT / folder).rglob("*.json") if "out" not in path.parts)
 
 
+def test_states_make_a_run_file(schema):
+    state = {"target": {"rdf": {"file": "rdf.tsv"}}}
+    assert fault(schema, {"states": {"hot": state, "cold": state}, "scene": {"density": 1}}) == ""
+    assert fault(schema, {"states": {"hot": state}, "secne": {}}) != ""
+
+
 def test_files_of_the_repository_are_valid(schema):
     read = []
     for path in FILES:

@@ -413,9 +413,9 @@ static void write_definitions(struct json_writer *writer, const struct topic *to
     }
 }
 
-/// A file with a target is a run file, one with beads a map.
+/// A file with a target or with states is a run file, one with beads a map.
 static void write_root(struct json_writer *writer) {
-    static const char *const files[][2] = {{"target", "run"}, {"beads", "map"}};
+    static const char *const files[][2] = {{"target", "run"}, {"states", "run"}, {"beads", "map"}};
     const size_t count = sizeof files / sizeof *files;
     for (size_t k = 0; k < count; k++) {
         mf_json_begin(writer, "if");
