@@ -227,9 +227,12 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
                                            "of it"
                       : looks == wanted  ? "20 times as long as the targets' windows"
                                          : "the least that gives errors";
-    if (mf_fit_choice_lacks(c->root, path, "samples"))
-        mf_fit_choice_note(c, "verification: %.0f simulations of %.0f samples, %s", replicas,
-                           samples, why);
+    if (mf_fit_choice_lacks(c->root, path, "samples")) {
+        mf_fit_choice_note(c, "verification: %.0f simulations of %.0f samples at most, %s",
+                           replicas, samples, why);
+        if (mf_fit_choice_lacks(c->root, path, "end_early"))
+            TRY(mf_fit_choice_give_text(c->root, path, "end_early", "yes"));
+    }
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", replicas));
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", begin));
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "every", every));

@@ -146,9 +146,9 @@ void mf_measurement_clear(struct measurement *measurement) {
 
 size_t mf_measurement_spans(struct measurement *measurement, struct memory_span *spans) {
     struct simulation *simulation = &measurement->simulation;
-    size_t n = 0;
-    spans[n++] = (struct memory_span){&simulation->step, sizeof simulation->step};
-    n += mf_particles_spans(&simulation->particles, spans + n);
+    if (simulation_wants_capacity(simulation) && mf_simulation_reserve(simulation) != STATUS_OK)
+        return 0;
+    size_t n = mf_simulation_spans(simulation, spans);
     for (const struct observable_use *use = measurement->use; use->observable; use++) {
         if (use->observable->reserve && use->observable->reserve(use->state) != STATUS_OK)
             return 0;

@@ -7,8 +7,9 @@
 #include "base/statistics.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/motion.h"
-#include "observe/rdf_observable.h"
+#include "observe/stationary.h"
 #include "problem/group_kind.h"
+#include "problem/verify_known.h"
 
 #include <math.h>
 
@@ -28,10 +29,17 @@ const struct field mf_verify_fields[] = {
      .maximum = 1e12, .unit = "steps", .help = "interval before the first sample"},
     {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 50, .minimum = 1, .maximum = 1e8,
      .unit = "", .help = "samples of each replica"},
+    {"end_early", FIELD_CHOICE, MEMBER(end_early), .choices = no_or_yes, .initial = 0, .unit = "",
+     .help = "end when differences from targets are known within a tenth, and T within a third of "
+             "a per cent; default yes if the file has no \"samples\""},
     {"every", FIELD_INTEGER, MEMBER(plan.every), .initial = 25, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "interval between samples"},
     FIELD_END,
 };
+
+/// A verification that may end early looks after these parts of its samples.
+enum { LOOKS = 5 };
+static const int look_at[LOOKS] = {2, 3, 4, 6, 8};
 
 /// Replicas at work.
 struct work {
@@ -40,11 +48,14 @@ struct work {
     struct verify_parameters parameters;
     uint32_t attempt; ///< with another time step, or again as the first had not settled
     bool last;        ///< no shorter step will be tried
+    struct measure_plan so_far; ///< up to the next look
+    bool goes_on;               ///< there was a look before
     double
         *begin; ///< where they begin, shape [replicas, dimensions, particles]; NULL: as the scene
     const struct inverse_listener *listener;
     struct measurement *replicas;
     struct inverse_progress progress;
+    uint64_t taken; ///< samples of each replica since the last look
 };
 
 static enum status begin_replica(void *context, size_t number, void *result) {
@@ -84,22 +95,26 @@ static enum status check_heat(const struct simulation *simulation, double temper
                           temperature, wanted);
 }
 
+/// From the beginning, or from the last look on, where another rank may have brought it.
 static enum status run_replica(void *context, size_t number, void *result) {
     const struct work *work = context;
-    const struct verify_parameters *parameters = &work->parameters;
     struct measurement *replica = &work->replicas[number];
     double temperature;
     (void)result;
-    TRY(mf_measure_equilibrate(&replica->simulation, &parameters->plan, &temperature, NULL));
-    if (!work->last)
-        TRY(check_heat(&replica->simulation, temperature));
-    return mf_measure_sample(&replica->simulation, &parameters->plan, replica->use, NULL);
+    if (work->goes_on) {
+        TRY(mf_simulation_restore(&replica->simulation));
+    } else {
+        TRY(mf_measure_equilibrate(&replica->simulation, &work->so_far, &temperature, NULL));
+        if (!work->last)
+            TRY(check_heat(&replica->simulation, temperature));
+    }
+    return mf_measure_sample(&replica->simulation, &work->so_far, replica->use, NULL);
 }
 
 static void report_one(void *context, size_t number, const void *result) {
     struct work *work = context;
     (void)number, (void)result;
-    work->progress.done++;
+    work->progress.done += work->taken;
     work->listener->report(work->listener->context, &work->progress);
 }
 
@@ -107,18 +122,8 @@ static size_t list_measured(void *context, size_t number, struct memory_span *sp
     return mf_measurement_spans(&((const struct work *)context)->replicas[number], spans);
 }
 
-/// All replicas in parallel. Every rank begins them all, to have room for what others find.
-static enum status run_replicas(struct work *work) {
-    const size_t count = (size_t)work->parameters.replicas;
-    // With another step there are as many more.
-    work->progress = (struct inverse_progress){.done = work->progress.done,
-                                               .total = work->progress.done + count,
-                                               .best = NAN,
-                                               .min = NAN,
-                                               .mean = NAN};
-    TRY(mf_parallel_try(&(struct parallel_tasks){
-        .count = count, .threads = work->problem->threads, .run = begin_replica, .context = work}));
-    return mf_parallel_try(&(struct parallel_tasks){.count = count,
+static enum status run_until_look(struct work *work) {
+    return mf_parallel_try(&(struct parallel_tasks){.count = (size_t)work->parameters.replicas,
                                                     .threads = work->problem->threads,
                                                     .run = run_replica,
                                                     .take = report_one,
@@ -126,58 +131,52 @@ static enum status run_replicas(struct work *work) {
                                                     .spans = list_measured});
 }
 
-/// Exchange the last replica and that at `k`.
-static void exchange_with_last(struct measurement *replicas, size_t count, size_t k) {
-    const struct measurement last = replicas[count - 1];
-    replicas[count - 1] = replicas[k];
-    replicas[k] = last;
+/// Samples of each replica at a look; 0 if they are too few for one: of some targets a single
+/// window of time has no error.
+static int64_t samples_at(const struct work *work, int look) {
+    enum { MIN_SAMPLES = 2 * STATIONARY_PARTS, MIN_WINDOWS = 4 };
+    const struct measure_plan *plan = &work->parameters.plan;
+    enum target_kind longest;
+    const int64_t window =
+        mf_measurement_window(&work->problem->compared,
+                              work->replicas->simulation.setup.time_step, &longest);
+    const int64_t samples = plan->samples * look_at[look] / look_at[LOOKS - 1];
+    const bool enough = samples >= MIN_SAMPLES && samples * plan->every >= MIN_WINDOWS * window;
+    return look == LOOKS - 1 || enough ? samples : 0;
 }
 
-/// Standard error of the distances by leaving out one replica in turn (jackknife); NaN with one.
-static enum status find_errors(struct measurement *replicas, size_t count,
-                               struct verification *verification) {
-    enum status status = STATUS_OK;
-    const struct targets *targets = replicas->targets;
-    struct observed without = {0};
-    double squares[TARGETS] = {0};
-    CHECK(mf_measurement_values_init(&without, targets));
-    for (size_t k = 0; k < count && count > 1; k++) {
-        struct target_distance distance[TARGETS];
-        exchange_with_last(replicas, count, k);
-        status = mf_measurement_result(replicas, count - 1, &without);
-        exchange_with_last(replicas, count, k);
-        CHECK(status);
-        mf_measurement_distance(&without, targets, distance);
-        for (int kind = 0; kind < TARGETS; kind++) {
-            const double difference = distance[kind].rms - verification->distance[kind].rms;
-            squares[kind] += difference * difference;
-        }
+/// All replicas in parallel, until they have all samples or know enough. Every rank begins them
+/// all, to have room for what others find.
+static enum status run_replicas(struct work *work) {
+    const size_t count = (size_t)work->parameters.replicas;
+    struct measure_plan *so_far = &work->so_far;
+    struct inverse_progress *progress = &work->progress;
+    int64_t before = 0;
+    bool known = false;
+    // With another step there are as many more.
+    *progress = (struct inverse_progress){
+        .done = progress->done,
+        .total = progress->done + count * (uint64_t)work->parameters.plan.samples,
+        .best = NAN,
+        .min = NAN,
+        .mean = NAN};
+    TRY(mf_parallel_try(&(struct parallel_tasks){
+        .count = count, .threads = work->problem->threads, .run = begin_replica, .context = work}));
+    work->goes_on = false;
+    *so_far = work->parameters.plan;
+    for (int look = work->parameters.end_early ? 0 : LOOKS - 1; look < LOOKS && !known; look++) {
+        so_far->samples = samples_at(work, look);
+        if (so_far->samples == 0)
+            continue;
+        work->taken = (uint64_t)(so_far->samples - before);
+        TRY(run_until_look(work));
+        if (look < LOOKS - 1)
+            TRY(mf_verify_knows(work->replicas, count, &known));
+        before = so_far->samples;
+        work->goes_on = true;
     }
-    for (int kind = 0; kind < TARGETS; kind++)
-        verification->distance_error[kind] =
-            count > 1 ? sqrt(squares[kind] * (double)(count - 1) / (double)count) : NAN;
-done:
-    mf_measurement_values_clear(&without);
-    return status;
-}
-
-/// The error of g(r)'s distance by leaving out blocks, of which there are more than replicas.
-static enum status find_rdf_error(const struct measurement *replicas, size_t count,
-                                  struct verification *verification) {
-    OWNED struct rdf *rdf = NULL;
-    const struct targets *targets = replicas->targets;
-    if (!targets_ask(targets, TARGET_RDF))
-        return STATUS_OK;
-    TRY_ARRAY(rdf, count);
-    for (size_t k = 0; k < count; k++) {
-        const struct rdf_observed *observed =
-            mf_measurement_state(&replicas[k], &mf_rdf_observable);
-        rdf[k] = observed->counted;
-    }
-    TRY(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value,
-                        &verification->distance[TARGET_RDF].rms,
-                        &verification->distance_error[TARGET_RDF]));
-    mf_statistics_mark_unknown_errors(&verification->distance_error[TARGET_RDF], 1);
+    progress->total = progress->done;
+    work->listener->report(work->listener->context, progress);
     return STATUS_OK;
 }
 
@@ -241,11 +240,8 @@ static enum status summarise(struct measurement *replicas, size_t count,
         verification->diffusion_begin = motion.fit_begin;
         verification->diffusion_end = motion.fit_end;
     }
-    TRY(mf_measurement_values_init(&verification->observed, targets));
-    TRY(mf_measurement_result(replicas, count, &verification->observed));
-    mf_measurement_distance(&verification->observed, targets, verification->distance);
-    TRY(find_errors(replicas, count, verification));
-    TRY(find_rdf_error(replicas, count, verification));
+    TRY(mf_verify_distances(replicas, count, &verification->observed, verification->distance,
+                            verification->distance_error));
     for (int kind = 0; kind < TARGETS; kind++)
         mf_statistics_mark_unknown_errors(verification->observed.error[kind],
                                           targets->target[kind].count);

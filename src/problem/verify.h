@@ -11,6 +11,7 @@ struct verify_parameters {
     int64_t replicas;
     double time_step;         ///< 0: that of the scene [τ]
     int shorten;              ///< of the choices "no" and "yes"
+    int end_early;            ///< of the choices "no" and "yes"
     struct measure_plan plan; ///< of that step: a shorter one takes as many more steps
 };
 

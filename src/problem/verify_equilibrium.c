@@ -72,10 +72,18 @@ done:
     return status;
 }
 
+/// Blocks that have samples.
+static size_t sampled_blocks(const struct rdf *rdf) {
+    size_t blocks = 0;
+    while (blocks < rdf->blocks && rdf->block_samples[blocks] > 0)
+        blocks++;
+    return blocks;
+}
+
 /// Pairs of a bin in the blocks of a replica, by part; the last blocks that make no whole part are
 /// left out.
 static void add_blocks(const struct rdf *rdf, const struct parts *parts, size_t replica) {
-    const size_t each = rdf->blocks / STATIONARY_PARTS;
+    const size_t each = sampled_blocks(rdf) / STATIONARY_PARTS;
     double samples[STATIONARY_PARTS] = {0};
     for (size_t b = 0; b < each * STATIONARY_PARTS; b++)
         samples[b / each] += rdf->block_samples[b];
@@ -92,7 +100,7 @@ static enum status look_at_pairs(const struct measurement *replicas, size_t coun
     const struct rdf_observed *first = mf_measurement_state(replicas, &mf_rdf_observable);
     struct parts parts = {0};
     double *weight = NULL;
-    if (first == NULL || first->counted.blocks < STATIONARY_PARTS)
+    if (first == NULL || sampled_blocks(&first->counted) < STATIONARY_PARTS)
         return STATUS_OK;
     CHECK(parts_init(&parts, count, first->counted.pairs * first->counted.bins.count));
     NEW_ARRAY(weight, parts.row);

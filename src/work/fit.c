@@ -199,7 +199,7 @@ struct verifying {
 
 static void report_verification(void *context, const struct inverse_progress *p) {
     struct verifying *verifying = context;
-    mf_progress_report(&verifying->progress, p->done, p->total, "simulations", "verification");
+    mf_progress_report(&verifying->progress, p->done, p->total, "samples", "verification");
     save_now_and_then(verifying->run);
 }
 
@@ -359,6 +359,7 @@ static enum status verify_and_write(struct run *run) {
     struct verifying verifying = {run,
                                   mf_progress_begin(run->progress.quiet, run->progress.watcher)};
     verifying.progress.folder = run->progress.folder;
+    verifying.progress.may_end_early = run->fit.verification.end_early == 1;
     const struct inverse_listener listener = {report_verification, &verifying};
     const size_t states = mf_fit_states_count(&run->fit);
     enum status status = STATUS_OK;

@@ -23,7 +23,7 @@ enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder 
     return STATUS_OK;
 }
 
-/// Simulations of a state, reported among those of all: more are done with a shorter time step.
+/// Samples of a state, reported among those of all: more are taken with a shorter time step.
 struct sharing {
     uint64_t before, after; ///< of other states
     uint64_t here;          ///< of this one, so far
@@ -99,6 +99,11 @@ done:
     return mf_fit_states_mark(state, status);
 }
 
+static uint64_t samples_of(const struct fit_file *state) {
+    const struct verify_parameters *verification = &state->verification;
+    return (uint64_t)(verification->replicas * verification->plan.samples);
+}
+
 enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
                                  const struct inverse_parameter *number,
                                  const struct inverse_listener *listener,
@@ -108,10 +113,10 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
     struct sharing sharing = {.listener = listener};
     const struct inverse_listener of_state = {report_of_state, &sharing};
     for (size_t s = 0; s < states; s++)
-        sharing.after += (uint64_t)mf_fit_states_at(fit, s)->verification.replicas;
+        sharing.after += samples_of(mf_fit_states_at(fit, s));
     for (size_t s = 0; s < states; s++) {
         const struct fit_file *state = mf_fit_states_at(fit, s);
-        sharing.after -= (uint64_t)state->verification.replicas;
+        sharing.after -= samples_of(state);
         TRY(verify_state(state, curve, number, &of_state, &verification[s]));
         sharing.before += sharing.here;
     }

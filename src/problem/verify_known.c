@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/verify_known.h"
+
+#include "base/memory.h"
+#include "base/statistics.h"
+#include "observe/rdf_observable.h"
+#include "observe/thermodynamics.h"
+
+#include <math.h>
+
+/// Relative errors of the rms difference from a target, and of the temperature, that are enough.
+static const double enough_distance = 0.1, enough_temperature = 1.0 / 300;
+
+// Distances ---------------------------------------------------------------------------------------
+
+/// Exchange the last replica and that at `k`.
+static void exchange_with_last(struct measurement *replicas, size_t count, size_t k) {
+    const struct measurement last = replicas[count - 1];
+    replicas[count - 1] = replicas[k];
+    replicas[k] = last;
+}
+
+static enum status find_errors(struct measurement *replicas, size_t count,
+                               const struct target_distance *of_all, double *error) {
+    enum status status = STATUS_OK;
+    const struct targets *targets = replicas->targets;
+    struct observed without = {0};
+    double squares[TARGETS] = {0};
+    CHECK(mf_measurement_values_init(&without, targets));
+    for (size_t k = 0; k < count && count > 1; k++) {
+        struct target_distance distance[TARGETS];
+        exchange_with_last(replicas, count, k);
+        status = mf_measurement_result(replicas, count - 1, &without);
+        exchange_with_last(replicas, count, k);
+        CHECK(status);
+        mf_measurement_distance(&without, targets, distance);
+        for (int kind = 0; kind < TARGETS; kind++) {
+            const double difference = distance[kind].rms - of_all[kind].rms;
+            squares[kind] += difference * difference;
+        }
+    }
+    for (int kind = 0; kind < TARGETS; kind++)
+        error[kind] = count > 1 ? sqrt(squares[kind] * (double)(count - 1) / (double)count) : NAN;
+done:
+    mf_measurement_values_clear(&without);
+    return status;
+}
+
+static enum status find_rdf_error(const struct measurement *replicas, size_t count, double *rms,
+                                  double *error) {
+    OWNED struct rdf *rdf = NULL;
+    const struct targets *targets = replicas->targets;
+    if (!targets_ask(targets, TARGET_RDF))
+        return STATUS_OK;
+    TRY_ARRAY(rdf, count);
+    for (size_t k = 0; k < count; k++) {
+        const struct rdf_observed *observed =
+            mf_measurement_state(&replicas[k], &mf_rdf_observable);
+        rdf[k] = observed->counted;
+    }
+    TRY(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value, rms, error));
+    mf_statistics_mark_unknown_errors(error, 1);
+    return STATUS_OK;
+}
+
+enum status mf_verify_distances(struct measurement *replicas, size_t count,
+                                struct observed *observed, struct target_distance *distance,
+                                double *error) {
+    TRY(mf_measurement_values_init(observed, replicas->targets));
+    TRY(mf_measurement_result(replicas, count, observed));
+    mf_measurement_distance(observed, replicas->targets, distance);
+    TRY(find_errors(replicas, count, distance, error));
+    return find_rdf_error(replicas, count, &distance[TARGET_RDF].rms, &error[TARGET_RDF]);
+}
+
+// What is known -----------------------------------------------------------------------------------
+
+static enum status knows_temperature(const struct measurement *replicas, size_t count,
+                                     bool *known) {
+    OWNED struct thermodynamics *own = NULL;
+    TRY_ARRAY(own, count);
+    for (size_t k = 0; k < count; k++)
+        own[k] = *(const struct thermodynamics *)mf_measurement_state(&replicas[k],
+                                                                      &mf_thermodynamics_observable);
+    const struct thermodynamics_summary found = mf_thermodynamics_result(own, count);
+    const bool moving = isfinite(found.temperature);
+    const double value = moving ? found.temperature : found.temperature_configurational;
+    const double error = moving ? found.temperature_error : found.temperature_configurational_error;
+    *known = !isfinite(value) || error <= enough_temperature * fabs(value);
+    return STATUS_OK;
+}
+
+static enum status knows_distances(struct measurement *replicas, size_t count, bool *known) {
+    enum status status = STATUS_OK;
+    struct observed observed = {0};
+    struct target_distance distance[TARGETS];
+    double error[TARGETS];
+    CHECK(mf_verify_distances(replicas, count, &observed, distance, error));
+    *known = true;
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (replicas->targets->target[kind].count > 1)
+            *known = *known && error[kind] <= enough_distance * distance[kind].rms;
+done:
+    mf_measurement_values_clear(&observed);
+    return status;
+}
+
+enum status mf_verify_knows(struct measurement *replicas, size_t count, bool *known) {
+    *known = count > 1;
+    if (*known)
+        TRY(knows_temperature(replicas, count, known));
+    if (*known)
+        TRY(knows_distances(replicas, count, known));
+    return STATUS_OK;
+}
