@@ -20,7 +20,7 @@ static const double gradient_of_noise = 2;
 enum { MAX_DOUBLINGS = 9 };
 
 /// Replicas that begin from disorder are equilibrated so many times as long.
-enum { DISORDER_EQUILIBRATION = 5 };
+enum { DISORDER_EQUILIBRATION = 2 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
 /// not settled.
