@@ -19,7 +19,7 @@
 
 struct parameters {
     struct population_parameters population;
-    int64_t checks, check_length;
+    int64_t checks, check_length, agreements;
     int surrogate;
 };
 
@@ -54,6 +54,7 @@ struct state {
         int stage;            ///< of `check`
         uint64_t checked;     ///< evaluations when the best candidate was last measured
         uint32_t last_better; ///< iteration in which the error fell last
+        uint32_t met;         ///< iterations whose best agreed with the targets but for noise
         bool known;           ///< whether there is a best
         double error, noise;  ///< of the best: the mean of its fresh measurements
         double variance;      ///< of that mean
@@ -76,6 +77,9 @@ static const struct field own_fields[] = {
     {"surrogate", FIELD_CHOICE, MEMBER(surrogate), .choices = surrogates, .initial = TRIED,
      .unit = "",
      .help = "try the optimum of a linear model, too; join: add it to the genetic population"},
+    {"agreements", FIELD_INTEGER, MEMBER(agreements), .initial = 8, .minimum = 0, .maximum = 1e6,
+     .unit = "",
+     .help = "iterations whose best agrees with its targets but for noise that end the fit; 0: none"},
     FIELD_END,
 };
 
@@ -236,7 +240,30 @@ done:
     return status;
 }
 
-/// An optimiser has converged if it ended by itself; what has used its budget up has just ended.
+/// Whether the fit has been at the noise of its simulations for long enough: these then tell no
+/// candidate from another, and its linear model has learnt from many of them.
+static bool rests(const struct state *state) {
+    return state->parameters.agreements > 0 &&
+           state->progress.met >= (uint64_t)state->parameters.agreements;
+}
+
+static void count_met(struct state *state) {
+    static const double chance = 2; // standard errors of the error
+    struct progress *progress = &state->progress;
+    progress->met += progress->known && progress->error - chance * sqrt(progress->variance) <=
+                                            progress->noise;
+}
+
+static void rest(const struct state *state, struct inverse_step *step) {
+    step->exhausted = true;
+    snprintf(step->reason, sizeof step->reason,
+             "its best has agreed with the targets but for noise in %d iterations (\"agreements\"); "
+             "longer simulations (\"samples\") tell candidates apart",
+             (int)state->parameters.agreements);
+}
+
+/// An optimiser has converged if it ended by itself; what has used its budget up, or come to the
+/// noise, has just ended.
 static void conclude(const struct state *state, struct inverse_step *step) {
     const struct optimiser *optimiser = state->optimiser;
     step->finished = true;
@@ -248,6 +275,8 @@ static void conclude(const struct state *state, struct inverse_step *step) {
         step->converged = true;
     else if (optimiser->gave_up && optimiser->gave_up(state->optimiser_state))
         mf_inverse_give_up(step);
+    else if (rests(state))
+        rest(state, step);
     else
         mf_inverse_exhaust(step, optimiser->budget, state->progress.last_better);
 }
@@ -316,9 +345,10 @@ static enum status iterate(void *memory, struct inverse_step *step,
         TRY(take_round(state, &round, listener));
         TRY(state->optimiser->ask(state->optimiser_state, &round));
     }
-    const bool finished = round.count == 0;
-    TRY(check(state, finished));
-    describe(state, step, finished);
+    const bool ends = round.count == 0;
+    TRY(check(state, ends));
+    count_met(state);
+    describe(state, step, ends || rests(state));
     mf_population_reset_survey(&state->population);
     state->progress.iteration++;
     return STATUS_OK;

@@ -133,6 +133,18 @@ static void test_populations_have_finished_when_their_budget_is_used_up(void **s
     }
 }
 
+static void test_populations_have_finished_when_their_best_agrees(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, PLAN,
+            "\"name\": \"genetic\", \"generations\": 60, \"population\": 12, \"surrogate\": "
+            "\"join\", \"agreements\": 2, \"patience\": 0, \"equilibration\": 50, "
+            "\"samples\": 10, \"every\": 10",
+            &result);
+    run_program_assert_code(&result, 0);
+    assert_summary("finished", "its best has agreed with the targets but for noise in 2 iterations");
+    assert_true(results_number("out/summary.json", "iterations") < 40);
+}
+
 /// The file again with a time step so short that the particles have hardly left their lattice.
 static void make_slow(struct temporary_folder *folder, const char *name) {
     char *text = temporary_folder_read(name);
@@ -202,6 +214,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_gauss_newton_has_not_converged_at_a_standstill_above_its_noise),
         TEST_WITHOUT_FIGURES(test_gauss_newton_says_when_too_few_succeeded_for_a_model),
         TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_budget_is_used_up),
+        TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_best_agrees),
         TEST_WITHOUT_FIGURES(test_cmaes_has_not_converged_when_its_verification_is_worse),
         TEST_WITHOUT_FIGURES(
             test_unstable_verification_tells_its_time_step_in_the_units_of_the_file),
