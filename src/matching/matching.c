@@ -79,7 +79,8 @@ static const struct field own_fields[] = {
      .help = "try the optimum of a linear model, too; join: add it to the genetic population"},
     {"agreements", FIELD_INTEGER, MEMBER(agreements), .initial = 8, .minimum = 0, .maximum = 1e6,
      .unit = "",
-     .help = "iterations whose best agrees with its targets but for noise that end the fit; 0: none"},
+     .help =
+         "iterations whose best agrees with its targets but for noise that end the fit; 0: none"},
     FIELD_END,
 };
 
@@ -250,16 +251,17 @@ static bool rests(const struct state *state) {
 static void count_met(struct state *state) {
     static const double chance = 2; // standard errors of the error
     struct progress *progress = &state->progress;
-    progress->met += progress->known && progress->error - chance * sqrt(progress->variance) <=
-                                            progress->noise;
+    progress->met +=
+        progress->known && progress->error - chance * sqrt(progress->variance) <= progress->noise;
 }
 
 static void rest(const struct state *state, struct inverse_step *step) {
     step->exhausted = true;
-    snprintf(step->reason, sizeof step->reason,
-             "its best has agreed with the targets but for noise in %d iterations (\"agreements\"); "
-             "longer simulations (\"samples\") tell candidates apart",
-             (int)state->parameters.agreements);
+    snprintf(
+        step->reason, sizeof step->reason,
+        "its best has agreed with the targets but for noise in %d iterations (\"agreements\"); "
+        "longer simulations (\"samples\") tell candidates apart",
+        (int)state->parameters.agreements);
 }
 
 /// An optimiser has converged if it ended by itself; what has used its budget up, or come to the

@@ -46,8 +46,8 @@ struct work {
     const struct inverse_problem *problem;
     const struct table *potential, *omega;
     struct verify_parameters parameters;
-    uint32_t attempt; ///< with another time step, or again as the first had not settled
-    bool last;        ///< no shorter step will be tried
+    uint32_t attempt;           ///< with another time step, or again as the first had not settled
+    bool last;                  ///< no shorter step will be tried
     struct measure_plan so_far; ///< up to the next look
     bool goes_on;               ///< there was a look before
     double
@@ -137,9 +137,8 @@ static int64_t samples_at(const struct work *work, int look) {
     enum { MIN_SAMPLES = 2 * STATIONARY_PARTS, MIN_WINDOWS = 4 };
     const struct measure_plan *plan = &work->parameters.plan;
     enum target_kind longest;
-    const int64_t window =
-        mf_measurement_window(&work->problem->compared,
-                              work->replicas->simulation.setup.time_step, &longest);
+    const int64_t window = mf_measurement_window(
+        &work->problem->compared, work->replicas->simulation.setup.time_step, &longest);
     const int64_t samples = plan->samples * look_at[look] / look_at[LOOKS - 1];
     const bool enough = samples >= MIN_SAMPLES && samples * plan->every >= MIN_WINDOWS * window;
     return look == LOOKS - 1 || enough ? samples : 0;
@@ -154,12 +153,12 @@ static enum status run_replicas(struct work *work) {
     int64_t before = 0;
     bool known = false;
     // With another step there are as many more.
-    *progress = (struct inverse_progress){
-        .done = progress->done,
-        .total = progress->done + count * (uint64_t)work->parameters.plan.samples,
-        .best = NAN,
-        .min = NAN,
-        .mean = NAN};
+    *progress = (struct inverse_progress){.done = progress->done,
+                                          .total = progress->done +
+                                                   count * (uint64_t)work->parameters.plan.samples,
+                                          .best = NAN,
+                                          .min = NAN,
+                                          .mean = NAN};
     TRY(mf_parallel_try(&(struct parallel_tasks){
         .count = count, .threads = work->problem->threads, .run = begin_replica, .context = work}));
     work->goes_on = false;

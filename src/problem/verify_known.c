@@ -80,8 +80,8 @@ static enum status knows_temperature(const struct measurement *replicas, size_t 
     OWNED struct thermodynamics *own = NULL;
     TRY_ARRAY(own, count);
     for (size_t k = 0; k < count; k++)
-        own[k] = *(const struct thermodynamics *)mf_measurement_state(&replicas[k],
-                                                                      &mf_thermodynamics_observable);
+        own[k] = *(const struct thermodynamics *)mf_measurement_state(
+            &replicas[k], &mf_thermodynamics_observable);
     const struct thermodynamics_summary found = mf_thermodynamics_result(own, count);
     const bool moving = isfinite(found.temperature);
     const double value = moving ? found.temperature : found.temperature_configurational;
