@@ -97,11 +97,16 @@ static void load_velocities(void *context, size_t begin, size_t end) {
             particles->kernel_force[k][d] = d < 3 ? particles->velocity[d][k] : 0;
 }
 
-static void store_velocities(void *context, size_t begin, size_t end) {
+SIMD_CLONES static void store_velocities(void *context, size_t begin, size_t end) {
     struct particles *particles = context;
-    for (int d = 0; d < particles->box.dimensions; d++)
-        for (size_t k = begin; k < end; k++)
-            particles->velocity[d][k] = particles->kernel_force[k][d];
+    const double(*v)[4] = (const double(*)[4])particles->kernel_force;
+    double *restrict x = particles->velocity[0], *restrict y = particles->velocity[1];
+    double *restrict z = particles->velocity[2];
+    for (size_t k = begin; k < end; k++) {
+        x[k] = v[k][0];
+        y[k] = v[k][1];
+        z[k] = v[k][2];
+    }
 }
 
 /// Without masses they are 1.
