@@ -13,15 +13,25 @@ static size_t part_begin(size_t count, int number, int parts) {
     return number == parts ? count : count * (size_t)number / (size_t)parts / 16 * 16;
 }
 
+/// Piece by piece, so that a body that goes through several arrays, or through one several times,
+/// finds again in the second-level cache what it has just read.
+static void do_pieces(void (*body)(void *context, size_t begin, size_t end), void *context,
+                      size_t begin, size_t end) {
+    enum { PIECE = 1024 };
+    for (; begin < end; begin += PIECE)
+        body(context, begin, end - begin < PIECE ? end : begin + PIECE);
+}
+
 void mf_parallel_for(size_t count, int threads,
                      void (*body)(void *context, size_t begin, size_t end), void *context) {
     if (threads <= 1) {
-        body(context, 0, count);
+        do_pieces(body, context, 0, count);
         return;
     }
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int part = 0; part < threads; part++)
-        body(context, part_begin(count, part, threads), part_begin(count, part + 1, threads));
+        do_pieces(body, context, part_begin(count, part, threads),
+                  part_begin(count, part + 1, threads));
 }
 
 double mf_parallel_sum(size_t count, int threads,

@@ -14,7 +14,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// Call `body` for stretches begin … end − 1 that make up 0 … count − 1, one a thread.
+/// Call `body` for stretches begin … end − 1 that make up 0 … count − 1, each thread for pieces of
+/// one that its caches hold.
 ///
 /// The stretches depend on the number of threads: a body whose elements do not touch each other
 /// gives the same bits for any number.

@@ -122,14 +122,9 @@ enum status mf_neighbours_sort_and_build(struct neighbours *neighbours,
                                          struct particles *particles) {
     if (!mf_particles_wrap(particles))
         return mf_status_fail(STATUS_UNSTABLE, "a position is nan, or beyond the reach of the box");
-    mf_particles_update_fractions(particles);
     mf_neighbours_sort(neighbours, particles);
     mf_particles_permute(particles, neighbours->cells.order);
-    mf_particles_label_places(particles);
-    mf_particles_update_fractions(particles);
-    for (int d = 0; d < particles->box.dimensions; d++)
-        memcpy(neighbours->built[d], particles->position[d],
-               particles->count * sizeof *particles->position[d]);
+    mf_particles_settle(particles, neighbours->built);
     return mf_neighbours_build(neighbours, particles);
 }
 

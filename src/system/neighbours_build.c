@@ -19,16 +19,18 @@ struct sorting {
     const struct particles *particles;
 };
 
-static void find_cells_of(void *context, size_t begin, size_t end) {
+SIMD_CLONES static void find_cells_of(void *context, size_t begin, size_t end) {
     const struct sorting *sorting = context;
     const struct particles *particles = sorting->particles;
-    for (size_t k = begin; k < end; k++) {
-        uint32_t cell = 0;
-        for (int d = 0; d < particles->box.dimensions; d++) {
-            const int n = sorting->cells->count[d];
-            cell = cell * (uint32_t)n + cells_along_fraction(particles->fraction[d][k], n);
-        }
-        sorting->cells->of[k] = cell;
+    uint32_t *restrict of = sorting->cells->of;
+    memset(of + begin, 0, (end - begin) * sizeof *of);
+    for (int d = 0; d < particles->box.dimensions; d++) {
+        const double inverse_length = 1 / particles->box.length[d];
+        const double *restrict x = particles->position[d];
+        const int n = sorting->cells->count[d];
+        for (size_t k = begin; k < end; k++)
+            of[k] =
+                of[k] * (uint32_t)n + cells_along_fraction(box_fraction(x[k], inverse_length), n);
     }
 }
 
@@ -191,8 +193,12 @@ static enum status reserve_list(struct neighbours *neighbours) {
     mf_memory_free(neighbours->owner);
     neighbours->list = neighbours->owner = NULL;
     neighbours->list_capacity = 0;
-    TRY_ARRAY(neighbours->list, capacity);
-    TRY_ARRAY(neighbours->owner, capacity / NEIGHBOURS_ROW + PARTICLES_PADDING);
+    // Much of the room is never touched, and so takes no memory.
+    neighbours->list = mf_memory_uncleared(capacity, sizeof *neighbours->list);
+    neighbours->owner = mf_memory_uncleared(capacity / NEIGHBOURS_ROW + PARTICLES_PADDING,
+                                            sizeof *neighbours->owner);
+    if (neighbours->list == NULL || neighbours->owner == NULL)
+        return STATUS_NO_MEMORY;
     neighbours->list_capacity = capacity;
     return STATUS_OK;
 }

@@ -21,9 +21,15 @@ enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct 
     rows->margin = neighbours_span_axis(neighbours, 2) ? 0 : neighbours->range_cells[2];
     const size_t images = rows->margin > 0 ? 2 * neighbours->count : 0;
     const size_t capacity = neighbours->count + images + row_count(neighbours) * ROW_PADDING;
-    for (int d = 0; d < 3; d++)
-        TRY_ARRAY(rows->place[d], capacity);
-    TRY_ARRAY(rows->particle, capacity);
+    // There is room for images of all particles: most of it is never touched.
+    for (int d = 0; d < box->dimensions; d++) {
+        rows->place[d] = mf_memory_uncleared(capacity, sizeof *rows->place[d]);
+        if (rows->place[d] == NULL)
+            return STATUS_NO_MEMORY;
+    }
+    rows->particle = mf_memory_uncleared(capacity, sizeof *rows->particle);
+    if (rows->particle == NULL)
+        return STATUS_NO_MEMORY;
     rows->cells = (size_t)(neighbours->cells.count[2] + 2 * rows->margin);
     TRY_ARRAY(rows->start, row_count(neighbours) * (rows->cells + 1));
     return STATUS_OK;

@@ -12,6 +12,7 @@ enum {
     SAVED = 2,   ///< kept by a checkpoint
     PRECISE = 4, ///< of the kernels in double precision: there if they are asked for
     JOINED = 8,  ///< of molecules: likewise
+    MOTION = 16, ///< of mf_particles_update_motion: until then it takes no memory and is not sorted
 };
 
 /// An array of the struct: where its pointers are, how many for the axes, the size of an element.
@@ -33,14 +34,14 @@ static const struct array arrays[] = {
     {AXES(fraction), 0, PARTICLES_PADDING},
     {ARRAY(id), SORTED | SAVED, 0},
     {ARRAY(kernel_place), 0, 0},
-    {ARRAY(kernel_motion), SORTED, 0},
+    {ARRAY(kernel_motion), SORTED | MOTION, 0},
     {ARRAY(kernel_force), 0, 0},
     {ARRAY(precise_place), PRECISE, 0},
-    {ARRAY(precise_motion), PRECISE | SORTED, 0},
+    {ARRAY(precise_motion), PRECISE | SORTED | MOTION, 0},
     {ARRAY(spare), 0, 0},
     {offsetof(struct particles, spare_words), 1, sizeof(uint32_t), 0, 0},
-    {ARRAY(spare_motion), 0, 0},
-    {ARRAY(spare_precise_motion), PRECISE, 0},
+    {ARRAY(spare_motion), MOTION, 0},
+    {ARRAY(spare_precise_motion), PRECISE | MOTION, 0},
     {ARRAY(place), JOINED, 0},
 };
 enum { ARRAYS = sizeof arrays / sizeof *arrays };
@@ -65,7 +66,9 @@ static enum status allocate(struct particles *particles, int wanted) {
         for (int axis = 0; axis < arrays[k].axes; axis++) {
             if ((arrays[k].treatment & (PRECISE | JOINED)) != wanted)
                 continue;
-            void *memory = mf_memory_zeroed(particles->count + arrays[k].padding, arrays[k].size);
+            const size_t count = particles->count + arrays[k].padding;
+            void *memory = arrays[k].treatment & MOTION ? mf_memory_uncleared(count, arrays[k].size)
+                                                        : mf_memory_zeroed(count, arrays[k].size);
             if (memory == NULL)
                 return STATUS_NO_MEMORY;
             set_array(particles, &arrays[k], axis, memory);
@@ -229,6 +232,29 @@ void mf_particles_label_places(struct particles *particles) {
     mf_parallel_for(particles->count, particles->threads, label_places, particles);
 }
 
+struct settling {
+    struct particles *particles;
+    double *const *copy;
+};
+
+static void settle(void *context, size_t begin, size_t end) {
+    const struct settling *settling = context;
+    struct particles *particles = settling->particles;
+    update_fractions(particles, begin, end);
+    if (particles->precise_place)
+        update_precise_places(particles, begin, end);
+    label_places(particles, begin, end);
+    for (int d = 0; d < particles->box.dimensions; d++)
+        memcpy(settling->copy[d] + begin, particles->position[d] + begin,
+               (end - begin) * sizeof *settling->copy[d]);
+}
+
+void mf_particles_settle(struct particles *particles, double *const copy[3]) {
+    struct settling settling = {particles, copy};
+    particles->orders++;
+    mf_parallel_for(particles->count, particles->threads, settle, &settling);
+}
+
 struct prediction {
     struct particles *particles;
     double ahead;
@@ -262,6 +288,7 @@ SIMD_CLONES static void update_precise_motion(void *context, size_t begin, size_
 
 void mf_particles_update_motion(struct particles *particles, double ahead) {
     struct prediction prediction = {particles, ahead};
+    particles->has_motion = true;
     mf_parallel_for(particles->count, particles->threads, update_motion, &prediction);
     if (particles->precise_motion)
         mf_parallel_for(particles->count, particles->threads, update_precise_motion, &prediction);
@@ -335,15 +362,19 @@ static void *permute(struct particles *particles, void *array, size_t size, cons
     return permutation.to;
 }
 
+/// Whether an array is there and has something to be sorted.
+static bool is_sorted(const struct particles *particles, const struct array *array) {
+    return (array->treatment & SORTED) && (particles->has_motion || !(array->treatment & MOTION)) &&
+           array_of(particles, array, 0) != NULL;
+}
+
 void mf_particles_permute(struct particles *particles, const uint32_t *order) {
     for (int k = 0; k < ARRAYS; k++)
-        for (int axis = 0; axis < arrays[k].axes; axis++) {
-            void *array = array_of(particles, &arrays[k], axis);
-            if ((arrays[k].treatment & SORTED) && array &&
-                (arrays[k].axes == 1 || axis < particles->box.dimensions))
+        for (int axis = 0; axis < arrays[k].axes && is_sorted(particles, &arrays[k]); axis++)
+            if (arrays[k].axes == 1 || axis < particles->box.dimensions)
                 set_array(particles, &arrays[k], axis,
-                          permute(particles, array, arrays[k].size, order));
-        }
+                          permute(particles, array_of(particles, &arrays[k], axis), arrays[k].size,
+                                  order));
     for (int k = 0; k < particles->attributes; k++)
         for (int c = 0; c < particles->attribute[k].components; c++) {
             void **value = &particles->attribute[k].value[c];

@@ -60,7 +60,7 @@ struct particles {
     uint32_t *id;         ///< 0 … count − 1, as placed
     int32_t *fraction[3]; ///< box_fraction; room for PARTICLES_PADDING more
     struct particle_place *kernel_place;          ///< shape [count]: the same for the pair kernels
-    struct particle_motion *kernel_motion;        ///< shape [count]
+    struct particle_motion *kernel_motion;        ///< shape [count]; empty unless has_motion
     struct particle_precise_place *precise_place; ///< shape [count], or NULL without
     struct particle_precise_motion *precise_motion; ///< … mf_particles_keep_precise
     double (*kernel_force)[4];                      ///< shape [count, 4]: sums of the pair kernels
@@ -68,6 +68,7 @@ struct particles {
     void *spare_words;                              ///< shape [count]: the same for 32-bit words
     struct particle_motion *spare_motion;           ///< shape [count]
     struct particle_precise_motion *spare_precise_motion; ///< shape [count] or NULL
+    bool has_motion;                 ///< since the first mf_particles_update_motion
     const struct topology *topology; ///< molecules that they are, or NULL; borrowed
     uint32_t *place;                 ///< shape [count], of molecules: where each id stands, or NULL
     uint64_t orders;                 ///< changes whenever the order of the particles does
@@ -121,6 +122,11 @@ void mf_particles_update_fractions(struct particles *particles);
 /// Write the ids into `kernel_place` and `precise_place`, and the places of molecules' beads, after
 /// the order has changed.
 void mf_particles_label_places(struct particles *particles);
+
+/// In a new order: both of the above, and a copy of the positions, in one pass. Tested:
+/// test_neighbours.
+/// @param[out] copy  shape [count] for each dimension
+void mf_particles_settle(struct particles *particles, double *const copy[3]);
 
 /// Refresh `kernel_motion` and `precise_motion`, with velocities predicted by a time `ahead` [τ]:
 /// v + ahead · force.

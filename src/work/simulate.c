@@ -13,6 +13,7 @@
 #include "work/simulate_observables.h"
 
 #include <string.h>
+#include <sys/resource.h>
 
 /// Seconds between checkpoints of a long simulation, at least.
 static const double checkpoint_interval = 60;
@@ -321,6 +322,22 @@ static void remove_checkpoint(const struct run *run) {
     mf_tracked_files_remove(path);
 }
 
+enum { MEMORY_SIZE = 64 };
+
+/// The most memory that the program has had at once, and of so many particles that it is theirs
+/// what each of them takes.
+static void describe_memory(const struct run *run, char line[MEMORY_SIZE]) {
+    static const double many = 1e5;
+    const double count = (double)run->simulation.particles.count;
+    struct rusage used;
+    getrusage(RUSAGE_SELF, &used);
+    const double bytes = 1024.0 * (double)used.ru_maxrss;
+    const int length = snprintf(line, MEMORY_SIZE, "%.0f MB of memory", bytes / 1e6);
+    if (count >= many)
+        snprintf(line + length, (size_t)(MEMORY_SIZE - length), ", %.0f bytes a particle",
+                 bytes / count);
+}
+
 static enum status write_results(struct run *run) {
     const double taken = seconds(run);
     const struct observable_results results = results_of(run);
@@ -330,8 +347,10 @@ static enum status write_results(struct run *run) {
     mf_run_folder_draw(&run->folder);
     mf_simulate_observables_print(&run->observables, &results, &run->progress);
     print_remarks(run);
-    mf_progress_print(&run->progress, "%llu steps in %.3g s; results in %s",
-                      (unsigned long long)run->simulation.step, taken, run->folder.path);
+    char memory[MEMORY_SIZE];
+    describe_memory(run, memory);
+    mf_progress_print(&run->progress, "%llu steps in %.3g s, %s; results in %s",
+                      (unsigned long long)run->simulation.step, taken, memory, run->folder.path);
     return STATUS_OK;
 }
 
@@ -373,6 +392,7 @@ done:
 enum status mf_simulate_explain(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
+    char memory[MEMORY_SIZE];
     NEW_ARRAY(run, 1);
     CHECK(read_file(run, file, options));
     // All that a run refuses before its first step.
@@ -380,6 +400,8 @@ enum status mf_simulate_explain(const char *file, const struct run_options *opti
     mf_explain_scale(stdout, &run->scene.units);
     mf_explain_scene(stdout, &run->scene.setup, &run->scene.units, run->observables.use,
                      run->plan.every);
+    describe_memory(run, memory);
+    printf("%s\n", memory);
 done:
     clear(run);
     return status;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // `mesofit simulate` from outside: its files, what it says, and how it ends.
+#include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -60,6 +61,28 @@ static void test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture(void **
     results_assert_same("out", "again", (const char *const[]){"used.json", NULL});
     RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
     assert_contains(result.out, "2 types: which curve a pair of the 3 kinds has");
+}
+
+/// A liquid of 43 places on the list of a particle.
+static void test_simulate_says_what_memory_many_particles_take(void **state) {
+    static const double least = 200, most = 700; // bytes
+    static struct run_program_result result;
+    double megabytes, bytes;
+    small_inputs_write(*state, "scene.json",
+                       "{\"box\": [49.2, 49.2, 49.2], \"particles\": {\"count\": 100000}, "
+                       "\"temperature\": 0.7, \"time_step\": 0.005, "
+                       "\"conservative\": {\"law\": \"lennard-jones\", \"cutoff\": 2.5}}",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "--explain");
+    run_program_assert_code(&result, 0);
+    const char *line = strstr(result.out, "MB of memory");
+    assert_non_null(line);
+    while (line > result.out && line[-1] != '\n')
+        line--;
+    assert_int_equal(sscanf(line, "%lf MB of memory, %lf bytes a particle", &megabytes, &bytes), 2);
+    assert_true(bytes >= least);
+    assert_true(bytes <= most);
+    assert_close_relative(1e6 * megabytes, 1e5 * bytes, 0.02);
 }
 
 static void test_simulate_takes_a_dissipative_law_for_each_pair_type(void **state) {
@@ -384,6 +407,7 @@ int main(void) {
         TEST(test_simulate_draws_diffusion_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
         TEST_WITHOUT_FIGURES(test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture),
+        TEST_WITHOUT_FIGURES(test_simulate_says_what_memory_many_particles_take),
         TEST_WITHOUT_FIGURES(test_simulate_takes_a_dissipative_law_for_each_pair_type),
         TEST(test_figure_of_a_long_run_is_no_larger_when_gnuplot_is_there),
         TEST(test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there),
