@@ -68,10 +68,11 @@ struct pair_memory_pairs {
     size_t count, capacity;
     /// Shape [capacity + PARTICLES_PADDING]: particles. Those of one first particle are together.
     int32_t *first, *second;
-    uint32_t *first_id, *second_id; ///< shape [capacity]: their ids
+    uint32_t *first_id, *second_id; ///< the same shape: their ids
+    uint32_t *source, *missing;     ///< shape [capacity + 1]: for pair_memory.c
     /// Shape [variables][capacity] [sqrt(k_B T_0)]; NaN: the pair is out of range.
     /// There is room for one more, which `before` has for pairs that are new: it is NaN.
-    double *value[PAIR_MEMORY_MAX_VARIABLES];
+    float *value[PAIR_MEMORY_MAX_VARIABLES];
 };
 
 /// By particles: shape [particles].
