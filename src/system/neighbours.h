@@ -7,6 +7,7 @@
 /// no pairs, and a build only sorts the particles.
 #pragma once
 
+#include "base/parallel.h"
 #include "system/cells.h"
 #include "system/particles.h"
 
@@ -46,7 +47,7 @@ struct neighbours_rows {
 enum { NEIGHBOURS_BATCH = 512 };
 
 /// Parts enough for the processors of a desktop computer.
-enum { NEIGHBOURS_MAX_PARTS = 64 };
+enum { NEIGHBOURS_MAX_PARTS = PARALLEL_MAX_RING };
 
 struct neighbours {
     enum neighbours_kind kind;
