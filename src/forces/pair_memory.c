@@ -68,7 +68,8 @@ static enum status init_mode(struct pair_memory *memory, int m) {
     memory->mode[m].first = memory->variables;
     memory->mode[m].keep = decay * cos(mode->frequency * dt);
     memory->mode[m].turn = decay * sin(mode->frequency * dt);
-    memory->mode[m].noise = sqrt(-memory->scene.temperature * expm1(-2 * dt / mode->time));
+    memory->mode[m].noise =
+        sqrt(-memory->scene.temperature * expm1(-2 * dt / mode->time)) / memory->unit;
     memory->variables += mode->frequency > 0 ? 2 : 1;
     return tabulate(&memory->mode[m].half, mode->omega, half_angle, dt / sqrt(mode->time));
 }
@@ -85,6 +86,7 @@ static double range_of(const struct pair_memory_law *law, int pair) {
 static enum status tabulate_all(struct pair_memory *memory) {
     const struct pair_memory_law *law = &memory->law;
     memory->variables = 0;
+    memory->unit = memory->scene.temperature > 0 ? sqrt(memory->scene.temperature) : 1;
     for (int m = 0; m < law->modes; m++)
         TRY(init_mode(memory, m));
     return law->transverse
@@ -112,12 +114,8 @@ enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_me
 
 enum status mf_pair_memory_change(struct pair_memory *memory, double temperature,
                                   double time_step) {
-    const double scale = sqrt(temperature / memory->scene.temperature);
     memory->scene.temperature = temperature;
     memory->scene.time_step = time_step;
-    for (int n = 0; n < memory->variables; n++)
-        for (size_t k = 0; k < memory->pairs.count; k++)
-            memory->pairs.value[n][k] *= (float)scale;
     free_tables(memory);
     return tabulate_all(memory);
 }
@@ -315,7 +313,7 @@ double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables
                 energy += 0.5 * (double)pairs->value[k][n] * pairs->value[k][n];
                 ++*variables;
             }
-    return energy;
+    return memory->unit * memory->unit * energy;
 }
 
 size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans) {

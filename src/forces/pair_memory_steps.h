@@ -229,7 +229,7 @@ INLINE void memory_relax(struct memory_columns *columns, const struct memory_sce
     const struct pair_memory *memory = scene->memory;
     const float keep = (float)memory->mode[m].keep, turn = (float)memory->mode[m].turn;
     const float noise = (float)memory->mode[m].noise;
-    const float sigma = (float)sqrt(memory->scene.temperature);
+    const float sigma = (float)(sqrt(memory->scene.temperature) / memory->unit);
     float *z = columns->z[memory->mode[m].first], *y = z + PAIR_ROOM;
     const float *zeta = columns->zeta[memory->mode[m].first], *other = zeta + PAIR_ROOM;
     for (int k = 0; k < columns->near.count; k += LANES) {
@@ -251,12 +251,12 @@ INLINE void memory_relax(struct memory_columns *columns, const struct memory_sce
 INLINE void memory_find_rotations(struct memory_columns *columns, const struct memory_scene *scene,
                                   int m) {
     const struct pair_memory *memory = scene->memory;
-    const float *z = columns->z[memory->mode[m].first];
+    const float *z = columns->z[memory->mode[m].first], unit = (float)memory->unit;
     for (int k = 0; k < columns->near.count; k += LANES) {
         const lanes_real t = memory_values(columns, scene, m, memory->law.mode[m].omega,
                                            (const float(*)[4])memory->mode[m].half, k);
         const lanes_real scale = 1 / (1 + t * t), c = (1 - t * t) * scale;
-        const lanes_real s = (float)M_SQRT2 * t * scale, push = s * lanes_load(z + k);
+        const lanes_real s = (float)M_SQRT2 * t * scale, push = unit * s * lanes_load(z + k);
         lanes_store(columns->cosine[m] + k, c);
         lanes_store(columns->sine[m] + k, s);
         if (m == 0) {
@@ -274,15 +274,16 @@ INLINE void memory_find_rotations(struct memory_columns *columns, const struct m
 INLINE void memory_turn_variables(struct memory_columns *columns,
                                   const struct memory_scene *scene) {
     const struct pair_memory *memory = scene->memory;
+    const float unit = (float)memory->unit, inverse = 1 / unit;
     for (int m = 0; m < memory->law.modes; m++) {
         float *z = columns->z[memory->mode[m].first];
         for (int k = 0; k < columns->near.count; k += LANES) {
             const lanes_real c = lanes_load(columns->cosine[m] + k);
             const lanes_real s = lanes_load(columns->sine[m] + k);
             const lanes_real rest = lanes_load(z + k), u = lanes_load(columns->u + k);
-            lanes_store(z + k, c * rest - s * u);
+            lanes_store(z + k, c * rest - inverse * s * u);
             if (m + 1 < memory->law.modes)
-                lanes_store(columns->u + k, c * u + 2 * s * rest);
+                lanes_store(columns->u + k, c * u + 2 * unit * s * rest);
         }
     }
 }
