@@ -63,8 +63,7 @@ struct neighbours {
     struct cells cells;
     int range_cells[3]; ///< the range in cells: neighbours lie within so many
     struct neighbours_rows rows;
-    /// 1, or an even number of at least 4, by the cells alone: threads take the even parts, then
-    /// the odd ones, and never meet.
+    /// 1, or an even number of at least 4, by the cells alone: for mf_parallel_ring.
     int parts;
     struct neighbours_part part[NEIGHBOURS_MAX_PARTS];
 };
