@@ -8,6 +8,9 @@
 #include "base/ranks.h"
 #include "base/task_log.h"
 
+#include <sched.h>
+#include <stdatomic.h>
+
 /// Where part `number` of `parts` begins, at a multiple of 16: parts share no cache line.
 static size_t part_begin(size_t count, int number, int parts) {
     return number == parts ? count : count * (size_t)number / (size_t)parts / 16 * 16;
@@ -48,6 +51,41 @@ double mf_parallel_sum(size_t count, int threads,
     for (int block = 0; block < blocks; block++)
         total += sums[block];
     return total;
+}
+
+struct ring {
+    int parts;
+    void (*body)(void *context, int part);
+    void *context;
+    atomic_int begun; ///< how many
+    atomic_bool done[PARALLEL_MAX_RING];
+};
+
+static void wait_for(atomic_bool *done) {
+    enum { TURNS = 1000 }; // then the processor is for others, as where threads meet
+    for (int turn = 0; !atomic_load_explicit(done, memory_order_acquire); turn++)
+        if (turn > TURNS)
+            sched_yield();
+}
+
+/// Do parts until all have begun. Whoever waits for a part knows that a thread is at it.
+static void go_round(struct ring *ring) {
+    for (int n; (n = atomic_fetch_add(&ring->begun, 1)) < ring->parts;) {
+        const int evens = (ring->parts + 1) / 2, part = n < evens ? 2 * n : 2 * (n - evens) + 1;
+        if (n >= evens) {
+            wait_for(&ring->done[part - 1]);
+            wait_for(&ring->done[(part + 1) % ring->parts]);
+        }
+        ring->body(ring->context, part);
+        atomic_store_explicit(&ring->done[part], true, memory_order_release);
+    }
+}
+
+void mf_parallel_ring(int parts, int threads, void (*body)(void *context, int part),
+                      void *context) {
+    struct ring ring = {.parts = parts, .body = body, .context = context};
+#pragma omp parallel num_threads(threads) if (threads > 1 && parts > 1)
+    go_round(&ring);
 }
 
 /// Run a task, and take its result or keep its failure.

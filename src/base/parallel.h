@@ -28,6 +28,14 @@ double mf_parallel_sum(size_t count, int threads,
                        double (*body)(const void *context, size_t begin, size_t end),
                        const void *context);
 
+enum { PARALLEL_MAX_RING = 64 };
+
+/// Call `body` for parts 0 … parts − 1 ≤ PARALLEL_MAX_RING that follow each other in a ring: one,
+/// or an even number of at least 4. A part touches what is its own and what is the next one's. Even
+/// parts, which never meet, come first, and each odd one when those beside it are done, so that all
+/// is touched in the same order by any number of threads. Tested: test_parallel.
+void mf_parallel_ring(int parts, int threads, void (*body)(void *context, int part), void *context);
+
 enum { PARALLEL_MAX_SPANS = 256 };
 
 /// Independent tasks 0 … count − 1 that may fail. What a task finds is either its own part of

@@ -76,16 +76,6 @@ enum status mf_friction_reserve(struct friction *friction, const struct neighbou
     return STATUS_OK;
 }
 
-/// The loops below share out the parts of the list: even ones, which never meet, then odd ones.
-#define FOR_ALL_PARTS(friction, threads, call)                                                     \
-    for (int first = 0; first < 2; first++) {                                                      \
-        _Pragma("omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)") for (  \
-            int p = first; p < (friction)->parts; p += 2)                                          \
-            call((const float(*)[4])(friction)->direction + (friction)->begin[p],                  \
-                 (friction)->pair + (friction)->begin[p],                                          \
-                 (friction)->end[p] - (friction)->begin[p]);                                       \
-    }
-
 static inline double sum_of(lanes_double4 a) {
     return (a[0] + a[1]) + a[2];
 }
@@ -204,17 +194,23 @@ void mf_friction_store_velocities(struct particles *particles) {
     mf_parallel_for(particles->count, particles->threads, store_velocities, particles);
 }
 
-static void sweep_all_and_report(const struct friction *friction, struct particles *particles,
-                                 struct transfer *transfer) {
-    lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
-    const double *mass = particles_masses(particles);
-    const int threads = particles->threads;
-    for (int first = 0; first < 2; first++) {
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
-        for (int p = first; p < friction->parts; p += 2)
-            sweep_and_report(friction, particles, p, mass, v, transfer->part[p]);
-    }
-    mf_transfer_collect(transfer, friction->parts, 1);
+struct sweep {
+    const struct friction *friction;
+    const struct particles *particles;
+    struct transfer *transfer; ///< NULL: nobody asks
+};
+
+static void sweep_part(void *context, int part) {
+    const struct sweep *sweep = context;
+    const struct friction *friction = sweep->friction;
+    lanes_double4 *v = (lanes_double4 *)sweep->particles->kernel_force;
+    const double *mass = particles_masses(sweep->particles);
+    const size_t begin = friction->begin[part];
+    if (sweep->transfer)
+        sweep_and_report(friction, sweep->particles, part, mass, v, sweep->transfer->part[part]);
+    else
+        sweep_pairs((const float(*)[4])friction->direction + begin, friction->pair + begin,
+                    friction->end[part] - begin, mass, v);
 }
 
 /// Damping and kick of a pair of unit masses become those of its own. With x = 1 − 2 d, by which u
@@ -244,17 +240,10 @@ void mf_friction_weigh(struct friction *friction, const struct particles *partic
 
 void mf_friction_sweep(const struct friction *friction, struct particles *particles,
                        struct transfer *transfer) {
-    lanes_double4 *v = (lanes_double4 *)particles->kernel_force;
-    const double *mass = particles_masses(particles);
-    const int threads = particles->threads;
+    struct sweep sweep = {friction, particles, transfer};
     mf_friction_load_velocities(particles);
-    if (transfer) {
-        sweep_all_and_report(friction, particles, transfer);
-    } else {
-#define SWEEP(direction, pair, count) sweep_pairs(direction, pair, count, mass, v)
-        FOR_ALL_PARTS(friction, threads, SWEEP)
-#undef SWEEP
-    }
+    mf_parallel_ring(friction->parts, particles->threads, sweep_part, &sweep);
+    mf_transfer_collect(transfer, friction->parts, 1);
     mf_friction_store_velocities(particles);
 }
 
@@ -274,14 +263,27 @@ SIMD_CLONES static void apply_pairs(const float (*direction)[4], const struct fr
         apply_pair(direction[k], &pair[k], from, to, kicks);
 }
 
+struct application {
+    const struct friction *friction;
+    const double (*from)[4];
+    double (*to)[4];
+    bool kicks;
+};
+
+static void apply_part(void *context, int part) {
+    const struct application *a = context;
+    const struct friction *friction = a->friction;
+    const size_t begin = friction->begin[part];
+    apply_pairs((const float(*)[4])friction->direction + begin, friction->pair + begin,
+                friction->end[part] - begin, (const lanes_double4 *)a->from, (lanes_double4 *)a->to,
+                a->kicks);
+}
+
 void mf_friction_apply(const struct friction *friction, const struct particles *particles,
                        const double (*from)[4], double (*to)[4], bool kicks) {
-    const int threads = particles->threads;
+    struct application application = {friction, from, to, kicks};
     memset(to, 0, particles->count * sizeof *to);
-#define APPLY(direction, pair, count)                                                              \
-    apply_pairs(direction, pair, count, (const lanes_double4 *)from, (lanes_double4 *)to, kicks)
-    FOR_ALL_PARTS(friction, threads, APPLY)
-#undef APPLY
+    mf_parallel_ring(friction->parts, particles->threads, apply_part, &application);
 }
 
 struct addition {

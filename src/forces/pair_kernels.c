@@ -74,16 +74,26 @@ void mf_pair_gather(struct particles *particles) {
     mf_parallel_for(particles->count, particles->threads, gather_forces, particles);
 }
 
-/// All parts of the list. A part adds to its own particles and to those of the next one: even parts
-/// never meet.
+struct pass {
+    pair_kernel kernel;
+    const struct pair_law *law;
+    struct particles *particles;
+    const struct neighbours *neighbours;
+    uint64_t step;
+    struct pair_sums *part_sums; ///< NULL: not wanted
+};
+
+static void pass_part(void *context, int part) {
+    const struct pass *pass = context;
+    pass->kernel(pass->law, pass->particles, pass->neighbours, part, pass->step,
+                 pass->part_sums ? &pass->part_sums[part] : NULL);
+}
+
+/// All parts of the list. A part adds to its own particles and to those of the next one.
 static void sweep(pair_kernel kernel, const struct pair_law *law, struct particles *particles,
                   const struct neighbours *neighbours, uint64_t step, struct pair_sums *part_sums) {
-    const int parts = neighbours->parts, threads = particles->threads;
-    for (int first = 0; first < 2; first++) {
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
-        for (int p = first; p < parts; p += 2)
-            kernel(law, particles, neighbours, p, step, part_sums ? &part_sums[p] : NULL);
-    }
+    struct pass pass = {kernel, law, particles, neighbours, step, part_sums};
+    mf_parallel_ring(neighbours->parts, particles->threads, pass_part, &pass);
 }
 
 void mf_pair_add(const struct pair_law *given, struct particles *particles,

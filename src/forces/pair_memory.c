@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "forces/pair_memory.h"
 
+#include "base/simd.h"
 #include "forces/pair_memory_kernels.h"
 
 #include <math.h>
@@ -67,7 +68,8 @@ static enum status init_mode(struct pair_memory *memory, int m) {
     memory->mode[m].first = memory->variables;
     memory->mode[m].keep = decay * cos(mode->frequency * dt);
     memory->mode[m].turn = decay * sin(mode->frequency * dt);
-    memory->mode[m].noise = sqrt(-memory->scene.temperature * expm1(-2 * dt / mode->time));
+    memory->mode[m].noise =
+        sqrt(-memory->scene.temperature * expm1(-2 * dt / mode->time)) / memory->unit;
     memory->variables += mode->frequency > 0 ? 2 : 1;
     return tabulate(&memory->mode[m].half, mode->omega, half_angle, dt / sqrt(mode->time));
 }
@@ -84,6 +86,7 @@ static double range_of(const struct pair_memory_law *law, int pair) {
 static enum status tabulate_all(struct pair_memory *memory) {
     const struct pair_memory_law *law = &memory->law;
     memory->variables = 0;
+    memory->unit = memory->scene.temperature > 0 ? sqrt(memory->scene.temperature) : 1;
     for (int m = 0; m < law->modes; m++)
         TRY(init_mode(memory, m));
     return law->transverse
@@ -111,12 +114,8 @@ enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_me
 
 enum status mf_pair_memory_change(struct pair_memory *memory, double temperature,
                                   double time_step) {
-    const double scale = sqrt(temperature / memory->scene.temperature);
     memory->scene.temperature = temperature;
     memory->scene.time_step = time_step;
-    for (int n = 0; n < memory->variables; n++)
-        for (size_t k = 0; k < memory->pairs.count; k++)
-            memory->pairs.value[n][k] *= scale;
     free_tables(memory);
     return tabulate_all(memory);
 }
@@ -128,6 +127,8 @@ static void free_pairs(struct pair_memory_pairs *pairs) {
     mf_memory_free(pairs->second);
     mf_memory_free(pairs->first_id);
     mf_memory_free(pairs->second_id);
+    mf_memory_free(pairs->source);
+    mf_memory_free(pairs->missing);
     for (int k = 0; k < PAIR_MEMORY_MAX_VARIABLES; k++)
         mf_memory_free(pairs->value[k]);
     *pairs = (struct pair_memory_pairs){0};
@@ -153,8 +154,10 @@ static enum status reserve(struct pair_memory_pairs *pairs, size_t count, int va
     free_pairs(pairs);
     TRY_ARRAY(pairs->first, capacity + PARTICLES_PADDING);
     TRY_ARRAY(pairs->second, capacity + PARTICLES_PADDING);
-    TRY_ARRAY(pairs->first_id, capacity);
-    TRY_ARRAY(pairs->second_id, capacity);
+    TRY_ARRAY(pairs->first_id, capacity + PARTICLES_PADDING);
+    TRY_ARRAY(pairs->second_id, capacity + PARTICLES_PADDING);
+    TRY_ARRAY(pairs->source, capacity + 1);
+    TRY_ARRAY(pairs->missing, capacity + 1);
     for (int k = 0; k < variables; k++)
         TRY_ARRAY(pairs->value[k], capacity + 1);
     pairs->capacity = capacity;
@@ -192,38 +195,59 @@ static void index_pairs(struct pair_memory_index *index, const struct pair_memor
     }
 }
 
-/// The pair of two ids, the first one's first, or the place after the last.
-static uint32_t find(const struct pair_memory *memory, uint32_t first_id, uint32_t second_id) {
-    for (uint32_t p = memory->index.begin[first_id]; p < memory->index.end[first_id]; p++)
-        if (memory->before.second_id[p] == second_id)
-            return p;
-    return (uint32_t)memory->before.count;
+/// Find the pairs of `before` whose particles are in the same order now, one row of the list of a
+/// first particle after the other: a row of before marks the ids of the others. Lists the pairs
+/// that are not among them.
+/// @param[out] source   shape [pairs]: numbers in `before`; the place after its last: none
+/// @param[out] missing  shape [pairs]
+static size_t find_sources(struct pair_memory *memory, uint32_t *source, uint32_t *missing) {
+    const struct pair_memory_index *index = &memory->index;
+    const uint32_t total = (uint32_t)memory->pairs.count, none = (uint32_t)memory->before.count;
+    const uint32_t *first_id = memory->pairs.first_id, *second_id = memory->pairs.second_id;
+    const uint32_t *before = memory->before.second_id;
+    uint32_t *mark = index->mark;
+    size_t misses = 0;
+    for (uint32_t n = 0; n < total;) {
+        const uint32_t id = first_id[n], begin = index->begin[id], count = index->end[id] - begin;
+        for (uint32_t p = begin; p < begin + count; p++)
+            mark[before[p]] = p;
+        for (; n < total && first_id[n] == id; n++) {
+            const uint32_t place = mark[second_id[n]];
+            const bool known = place - begin < count; // else it is a mark of another particle's
+            source[n] = known ? place : none;
+            missing[misses] = n;
+            misses += !known;
+        }
+    }
+    return misses;
 }
 
-/// Give the pairs their variables of before, or none. Those of a particle are marked by the ids of
-/// the others; few have had their particles in the other order since.
-static void carry(struct pair_memory *memory) {
+/// The same of pairs whose particles have been in the other order, if they were there.
+SIMD_CLONES static void find_turned(const struct pair_memory *memory, uint32_t *source,
+                                    const uint32_t *missing, size_t count) {
     const struct pair_memory_index *index = &memory->index;
-    const struct pair_memory_pairs *before = &memory->before;
-    struct pair_memory_pairs *pairs = &memory->pairs;
-    const size_t total = pairs->count;
-    const uint32_t none = (uint32_t)before->count;
-    for (int k = 0; k < memory->variables; k++)
-        before->value[k][none] = NAN;
-    for (size_t n = 0; n < total;) {
-        const uint32_t id = pairs->first_id[n], begin = index->begin[id];
-        const uint32_t count = index->end[id] - begin;
-        for (uint32_t p = begin; p < begin + count; p++)
-            index->mark[before->second_id[p]] = p;
-        for (; n < total && pairs->first_id[n] == id; n++) {
-            const uint32_t other = pairs->second_id[n], mark = index->mark[other];
-            const bool known = mark - begin < count; // else it is a mark of another particle's
-            uint32_t found = known ? mark : none;
-            if (!known && (index->seen[other] >> id % 64 & 1))
-                found = find(memory, other, id);
-            for (int k = 0; k < memory->variables; k++)
-                pairs->value[k][n] = before->value[k][found];
-        }
+    const uint32_t *before = memory->before.second_id;
+    for (size_t k = 0; k < count; k++) {
+        const uint32_t n = missing[k], id = memory->pairs.first_id[n];
+        const uint32_t other = memory->pairs.second_id[n];
+        if (!(index->seen[other] >> id % 64 & 1))
+            continue;
+        uint32_t found = source[n];
+        for (uint32_t p = index->begin[other]; p < index->end[other]; p++)
+            found = before[p] == id ? p : found;
+        source[n] = found;
+    }
+}
+
+/// Give the pairs their variables of before, or none.
+static void carry(struct pair_memory *memory) {
+    uint32_t *source = memory->pairs.source, *missing = memory->pairs.missing;
+    find_turned(memory, source, missing, find_sources(memory, source, missing));
+    for (int k = 0; k < memory->variables; k++) {
+        float *before = memory->before.value[k], *value = memory->pairs.value[k];
+        before[memory->before.count] = NAN;
+        for (size_t n = 0; n < memory->pairs.count; n++)
+            value[n] = before[source[n]];
     }
 }
 
@@ -263,6 +287,7 @@ enum status mf_pair_memory_follow(struct pair_memory *memory, const struct parti
     const struct pair_memory_pairs last = memory->pairs;
     memory->pairs = memory->before;
     memory->before = last;
+    TRY(reserve(&memory->pairs, 1, memory->variables));
     memory->pairs.count = collect(memory, particles, neighbours);
     if (memory->pairs.count > memory->pairs.capacity) {
         const size_t count = memory->pairs.count;
@@ -285,10 +310,10 @@ double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables
     for (int k = 0; k < memory->variables; k++)
         for (size_t n = 0; n < pairs->count; n++)
             if (!isnan(pairs->value[0][n])) {
-                energy += 0.5 * pairs->value[k][n] * pairs->value[k][n];
+                energy += 0.5 * (double)pairs->value[k][n] * pairs->value[k][n];
                 ++*variables;
             }
-    return energy;
+    return memory->unit * memory->unit * energy;
 }
 
 size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans) {
@@ -299,7 +324,7 @@ size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *span
     spans[n++] = (struct memory_span){pairs->first_id, count * sizeof *pairs->first_id};
     spans[n++] = (struct memory_span){pairs->second_id, count * sizeof *pairs->second_id};
     for (int k = 0; k < memory->variables; k++)
-        spans[n++] = (struct memory_span){pairs->value[k], count * sizeof(double)};
+        spans[n++] = (struct memory_span){pairs->value[k], count * sizeof(float)};
     return n;
 }
 

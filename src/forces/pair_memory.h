@@ -68,10 +68,11 @@ struct pair_memory_pairs {
     size_t count, capacity;
     /// Shape [capacity + PARTICLES_PADDING]: particles. Those of one first particle are together.
     int32_t *first, *second;
-    uint32_t *first_id, *second_id; ///< shape [capacity]: their ids
-    /// Shape [variables][capacity] [sqrt(k_B T_0)]; NaN: the pair is out of range.
+    uint32_t *first_id, *second_id; ///< the same shape: their ids
+    uint32_t *source, *missing;     ///< shape [capacity + 1]: for pair_memory.c
+    /// Shape [variables][capacity], in `unit` of pair_memory; NaN: the pair is out of range.
     /// There is room for one more, which `before` has for pairs that are new: it is NaN.
-    double *value[PAIR_MEMORY_MAX_VARIABLES];
+    float *value[PAIR_MEMORY_MAX_VARIABLES];
 };
 
 /// By particles: shape [particles].
@@ -87,11 +88,12 @@ struct pair_memory {
     struct pair_memory_scene scene;
     double range[TABLE_MAX_CURVES]; ///< of each pair type; 0: nothing acts
     int variables;                  ///< of a pair
+    double unit; ///< of these, sqrt(k_B T), or 1 if T is 0: they follow T [sqrt(k_B T_0)]
     struct {
         float (*half)[4];  ///< tan of half the angle of the rotation: rows of the table of ω
         int first;         ///< of its variables
         double keep, turn; ///< z ← keep z + turn y + noise ξ, y ← keep y − turn z + noise ξ'
-        double noise;
+        double noise;      ///< of z and y in `unit`
     } mode[PAIR_MEMORY_MAX_MODES];
     float (*root)[4]; ///< sqrt of the transverse damping: rows of its table
     struct normal_table normal;
@@ -107,7 +109,7 @@ enum status mf_pair_memory_init(struct pair_memory *memory, const struct pair_me
                                 const struct pair_memory_scene *scene) MUST_USE;
 void mf_pair_memory_clear(struct pair_memory *memory);
 
-/// Go on with another temperature, above 0, and time step: variables are scaled to the law that is
+/// Go on with another temperature, above 0, and time step: variables follow the law that is
 /// stationary then. Fails: NO_MEMORY.
 enum status mf_pair_memory_change(struct pair_memory *memory, double temperature,
                                   double time_step) MUST_USE;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "forces/pair_memory.h"
 
+#include "base/parallel.h"
 #include "base/simd.h"
 #include "forces/friction.h"
 #include "forces/pair_memory_kernels.h"
@@ -18,17 +19,24 @@ const struct pair_memory_kernels *mf_pair_memory_kernels(void) {
     }
 }
 
+struct sweep {
+    struct pair_memory *memory;
+    const struct particles *particles;
+    uint64_t step;
+    struct transfer *transfer;
+};
+
+static void sweep_part(void *context, int part) {
+    const struct sweep *sweep = context;
+    mf_pair_memory_kernels()->sweep(sweep->memory, sweep->particles, sweep->step, part,
+                                    sweep->transfer);
+}
+
 void mf_pair_memory_sweep(struct pair_memory *memory, struct particles *particles, uint64_t step,
                           struct transfer *transfer) {
-    const struct pair_memory_kernels *kernels = mf_pair_memory_kernels();
-    const int threads = particles->threads;
+    struct sweep sweep = {memory, particles, step, transfer};
     mf_friction_load_velocities(particles);
-    // The parts of the list: even ones, which never meet, then odd ones.
-    for (int first = 0; first < 2; first++) {
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
-        for (int p = first; p < memory->parts; p += 2)
-            kernels->sweep(memory, particles, step, p, transfer);
-    }
+    mf_parallel_ring(memory->parts, particles->threads, sweep_part, &sweep);
     if (transfer)
         mf_transfer_collect(transfer, memory->parts, 1);
     mf_friction_store_velocities(particles);

@@ -7,6 +7,7 @@
 /// no pairs, and a build only sorts the particles.
 #pragma once
 
+#include "base/parallel.h"
 #include "system/cells.h"
 #include "system/particles.h"
 
@@ -46,7 +47,7 @@ struct neighbours_rows {
 enum { NEIGHBOURS_BATCH = 512 };
 
 /// Parts enough for the processors of a desktop computer.
-enum { NEIGHBOURS_MAX_PARTS = 64 };
+enum { NEIGHBOURS_MAX_PARTS = PARALLEL_MAX_RING };
 
 struct neighbours {
     enum neighbours_kind kind;
@@ -62,8 +63,7 @@ struct neighbours {
     struct cells cells;
     int range_cells[3]; ///< the range in cells: neighbours lie within so many
     struct neighbours_rows rows;
-    /// 1, or an even number of at least 4, by the cells alone: threads take the even parts, then
-    /// the odd ones, and never meet.
+    /// 1, or an even number of at least 4, by the cells alone: for mf_parallel_ring.
     int parts;
     struct neighbours_part part[NEIGHBOURS_MAX_PARTS];
 };

@@ -32,6 +32,44 @@ static void test_parallel_for_visits_each_element_once_when_threads_are_many(voi
         assert_int_equal(visits[k], 5);
 }
 
+/// What each place of a ring was touched by: first and second.
+enum { RING_PLACES = 64 };
+struct touches {
+    int parts;
+    int count[RING_PLACES], part[RING_PLACES][2];
+};
+
+static void touch(struct touches *touches, int place, int part) {
+    const int n = touches->count[place]++;
+    if (n < 2)
+        touches->part[place][n] = part;
+}
+
+/// Works longer on the first parts: on those whoever comes after has to wait.
+static void touch_both(void *context, int part) {
+    struct touches *touches = context;
+    volatile double sum = 0;
+    touch(touches, part, part);
+    for (int k = 0; k < (part < 3 ? 200000 : 2000); k++)
+        sum += k;
+    touch(touches, (part + 1) % touches->parts, part);
+}
+
+static void test_parallel_ring_touches_all_places_in_one_order_for_any_threads(void **state) {
+    (void)state;
+    for (int threads = 1; threads <= 5; threads++)
+        for (int parts = 4; parts <= RING_PLACES; parts += 6) {
+            struct touches touches = {.parts = parts};
+            mf_parallel_ring(parts, threads, touch_both, &touches);
+            for (int place = 0; place < parts; place++) {
+                const int before = (place + parts - 1) % parts, even = place % 2 ? before : place;
+                assert_int_equal(touches.count[place], 2);
+                assert_int_equal(touches.part[place][0], even);
+                assert_int_equal(touches.part[place][1], place + before - even);
+            }
+        }
+}
+
 static void test_parallel_sum_has_the_same_bits_for_any_threads(void **state) {
     (void)state;
     for (size_t k = 0; k < COUNT; k++)
@@ -156,6 +194,7 @@ static void test_parallel_try_puts_an_interruption_before_other_failures(void **
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_parallel_for_visits_each_element_once_when_threads_are_many),
+        cmocka_unit_test(test_parallel_ring_touches_all_places_in_one_order_for_any_threads),
         cmocka_unit_test(test_parallel_sum_has_the_same_bits_for_any_threads),
         cmocka_unit_test(test_parallel_try_takes_each_result_once_and_from_one_thread_at_a_time),
         cmocka_unit_test(test_parallel_try_returns_the_failure_of_the_lowest_task_with_its_message),
