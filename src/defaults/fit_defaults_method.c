@@ -230,7 +230,7 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
     if (mf_fit_choice_lacks(c->root, path, "samples")) {
         mf_fit_choice_note(c, "verification: %.0f simulations of %.0f samples at most, %s",
                            replicas, samples, why);
-        if (mf_fit_choice_lacks(c->root, path, "end_early"))
+        if (replicas > 1 && mf_fit_choice_lacks(c->root, path, "end_early"))
             TRY(mf_fit_choice_give_text(c->root, path, "end_early", "yes"));
     }
     TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", replicas));

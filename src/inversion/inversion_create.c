@@ -20,7 +20,7 @@ const struct field mf_inversion_fields[] = {
      .maximum = REPLICAS_MAX, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 64, .minimum = 0,
      .maximum = 8e8, .unit = "sweeps",
-     .help = "least equilibration, five-fold from a random start; prolonged until samples are "
+     .help = "least equilibration, two-fold from a random start; prolonged until samples are "
              "stationary"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 64, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",

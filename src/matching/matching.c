@@ -54,7 +54,7 @@ struct state {
         int stage;            ///< of `check`
         uint64_t checked;     ///< evaluations when the best candidate was last measured
         uint32_t last_better; ///< iteration in which the error fell last
-        uint32_t met;         ///< iterations whose best agreed with the targets but for noise
+        uint32_t met;         ///< checks after which it agreed with the targets but for noise
         bool known;           ///< whether there is a best
         double error, noise;  ///< of the best: the mean of its fresh measurements
         double variance;      ///< of that mean
@@ -80,7 +80,8 @@ static const struct field own_fields[] = {
     {"agreements", FIELD_INTEGER, MEMBER(agreements), .initial = 8, .minimum = 0, .maximum = 1e6,
      .unit = "",
      .help =
-         "iterations whose best agrees with its targets but for noise that end the fit; 0: none"},
+         "measurements of the best that agree with the targets but for noise, which end the fit; "
+         "0: none"},
     FIELD_END,
 };
 
@@ -248,20 +249,19 @@ static bool rests(const struct state *state) {
            state->progress.met >= (uint64_t)state->parameters.agreements;
 }
 
-static void count_met(struct state *state) {
+/// After the best was measured afresh.
+static void count_met(struct progress *progress) {
     static const double chance = 2; // standard errors of the error
-    struct progress *progress = &state->progress;
     progress->met +=
         progress->known && progress->error - chance * sqrt(progress->variance) <= progress->noise;
 }
 
 static void rest(const struct state *state, struct inverse_step *step) {
     step->exhausted = true;
-    snprintf(
-        step->reason, sizeof step->reason,
-        "its best has agreed with the targets but for noise in %d iterations (\"agreements\"); "
-        "longer simulations (\"samples\") tell candidates apart",
-        (int)state->parameters.agreements);
+    snprintf(step->reason, sizeof step->reason,
+             "its best has agreed with the targets but for noise %d times (\"agreements\"); "
+             "longer simulations (\"samples\") tell candidates apart",
+             (int)state->parameters.agreements);
 }
 
 /// An optimiser has converged if it ended by itself; what has used its budget up, or come to the
@@ -319,6 +319,7 @@ static enum status check(struct state *state, bool last) {
         TRY(try_surrogate(state));
         progress->stage = NOTHING;
         progress->checked = state->population.totals.evaluations;
+        count_met(progress);
     }
     return STATUS_OK;
 }
@@ -349,7 +350,8 @@ static enum status iterate(void *memory, struct inverse_step *step,
     }
     const bool ends = round.count == 0;
     TRY(check(state, ends));
-    count_met(state);
+    if (!ends && rests(state))
+        TRY(check(state, true));
     describe(state, step, ends || rests(state));
     mf_population_reset_survey(&state->population);
     state->progress.iteration++;

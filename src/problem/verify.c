@@ -31,7 +31,7 @@ const struct field mf_verify_fields[] = {
      .unit = "", .help = "samples of each replica"},
     {"end_early", FIELD_CHOICE, MEMBER(end_early), .choices = no_or_yes, .initial = 0, .unit = "",
      .help = "end when differences from targets are known within a tenth, and T within a third of "
-             "a per cent; default yes if the file has no \"samples\""},
+             "a per cent; default yes where the program chooses the samples"},
     {"every", FIELD_INTEGER, MEMBER(plan.every), .initial = 25, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "interval between samples"},
     FIELD_END,

@@ -3,12 +3,15 @@
 
 #include "base/memory.h"
 #include "base/statistics.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"
 #include "observe/thermodynamics.h"
+#include "problem/verify_equilibrium.h"
 
 #include <math.h>
 
-/// Relative errors of the rms difference from a target, and of the temperature, that are enough.
+/// Relative errors of the rms difference from a target, and of temperatures, that are enough: three
+/// of the latter are the 1 % by which a time step is judged.
 static const double enough_distance = 0.1, enough_temperature = 1.0 / 300;
 
 // Distances ---------------------------------------------------------------------------------------
@@ -75,19 +78,42 @@ enum status mf_verify_distances(struct measurement *replicas, size_t count,
 
 // What is known -----------------------------------------------------------------------------------
 
-static enum status knows_temperature(const struct measurement *replicas, size_t count,
-                                     bool *known) {
+static bool is_known(double value, double error) {
+    return !isfinite(value) || error <= enough_temperature * fabs(value);
+}
+
+static enum status knows_temperatures(const struct measurement *replicas, size_t count,
+                                      bool *known) {
     OWNED struct thermodynamics *own = NULL;
     TRY_ARRAY(own, count);
-    for (size_t k = 0; k < count; k++)
-        own[k] = *(const struct thermodynamics *)mf_measurement_state(
-            &replicas[k], &mf_thermodynamics_observable);
+    for (size_t k = 0; k < count; k++) {
+        const struct thermodynamics *observed =
+            mf_measurement_state(&replicas[k], &mf_thermodynamics_observable);
+        own[k] = *observed;
+    }
     const struct thermodynamics_summary found = mf_thermodynamics_result(own, count);
-    const bool moving = isfinite(found.temperature);
-    const double value = moving ? found.temperature : found.temperature_configurational;
-    const double error = moving ? found.temperature_error : found.temperature_configurational_error;
-    *known = !isfinite(value) || error <= enough_temperature * fabs(value);
+    *known = is_known(found.temperature, found.temperature_error) &&
+             is_known(found.temperature_configurational, found.temperature_configurational_error);
     return STATUS_OK;
+}
+
+static double mean_square(const double *values, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += isfinite(values[k]) ? values[k] * values[k] : 0;
+    return sum / (double)count;
+}
+
+/// A curve: its distance within a tenth, of which no more than half of the square is the samples'
+/// own noise, so that it tells of the target and of what was found. Four replicas know an error
+/// badly: it is no less than that of the noise. A number: as well as that of the target.
+static bool knows_distance(const struct target *target, const double *own_error,
+                           const struct target_distance *distance, double error, bool number) {
+    const double own = mean_square(own_error, target->count);
+    const double of_target = mean_square(target->error, target->count);
+    if (number)
+        return own <= of_target || of_target == 0;
+    return error <= enough_distance * distance->rms && own <= 0.5 * distance->rms * distance->rms;
 }
 
 static enum status knows_distances(struct measurement *replicas, size_t count, bool *known) {
@@ -97,19 +123,31 @@ static enum status knows_distances(struct measurement *replicas, size_t count, b
     double error[TARGETS];
     CHECK(mf_verify_distances(replicas, count, &observed, distance, error));
     *known = true;
-    for (int kind = 0; kind < TARGETS; kind++)
-        if (replicas->targets->target[kind].count > 1)
-            *known = *known && error[kind] <= enough_distance * distance[kind].rms;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        const struct target *target = &replicas->targets->target[kind];
+        const bool number = target->count == 1 || kind == mf_kirkwood_buff_kind();
+        if (kind != TARGET_RDF)
+            error[kind] = fmax(error[kind], sqrt(distance[kind].variance));
+        if (target->count > 0)
+            *known = *known && knows_distance(target, observed.error[kind], &distance[kind],
+                                              error[kind], number);
+    }
 done:
     mf_measurement_values_clear(&observed);
     return status;
 }
 
 enum status mf_verify_knows(struct measurement *replicas, size_t count, bool *known) {
-    *known = count > 1;
-    if (*known)
-        TRY(knows_temperature(replicas, count, known));
+    char drifts[VERIFY_EQUILIBRIUM_SIZE];
+    *known = false;
+    if (count < 2)
+        return STATUS_OK;
+    TRY(knows_temperatures(replicas, count, known));
     if (*known)
         TRY(knows_distances(replicas, count, known));
+    if (*known) {
+        TRY(mf_verify_equilibrium(replicas, count, drifts));
+        *known = drifts[0] == '\0';
+    }
     return STATUS_OK;
 }

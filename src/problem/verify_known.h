@@ -15,6 +15,7 @@ enum status mf_verify_distances(struct measurement *replicas, size_t count,
                                 double *error) MUST_USE;
 
 /// Whether the samples so far tell what a verification must: the rms difference from each target
-/// that is a curve within a tenth of it, and the temperature of the velocities, or without these
-/// that of the forces, within a third of a per cent. Fails: NO_MEMORY. Tested: test_verify_known.
+/// that is a curve within a tenth of it, half of its square at most being their own noise; each
+/// number as well as its target does; both temperatures within a third of a per cent; and nothing
+/// drifts. Fails: NO_MEMORY. Tested: test_verify_known.
 enum status mf_verify_knows(struct measurement *replicas, size_t count, bool *known) MUST_USE;

@@ -141,8 +141,7 @@ static void test_populations_have_finished_when_their_best_agrees(void **state) 
             "\"samples\": 10, \"every\": 10",
             &result);
     run_program_assert_code(&result, 0);
-    assert_summary("finished",
-                   "its best has agreed with the targets but for noise in 2 iterations");
+    assert_summary("finished", "its best has agreed with the targets but for noise 2 times");
     assert_true(results_number("out/summary.json", "iterations") < 40);
 }
 
