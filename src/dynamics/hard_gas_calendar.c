@@ -18,7 +18,7 @@ enum status mf_hard_gas_calendar_init(struct hard_gas *gas) {
     TRY_ARRAY(calendar->first, (size_t)calendar->buckets);
     TRY_ARRAY(calendar->entry, (size_t)calendar->entries);
     if (count >= FETCHED_FROM)
-        TRY_ARRAY(calendar->fetch, 1);
+        TRY(mf_hard_gas_fetch_init(gas));
     return STATUS_OK;
 }
 

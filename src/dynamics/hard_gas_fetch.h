@@ -28,19 +28,22 @@ struct hard_gas_coming {
 };
 
 struct hard_gas_fetch {
+    uint32_t at_once;              ///< lines that are begun with together
     uint32_t bodies, asked, begun; ///< so many since the start; each array has the last of them
     struct hard_gas_coming coming[HARD_GAS_COMING];
     const void *line[HARD_GAS_LINES];
 };
+
+/// Make the queue.
+enum status mf_hard_gas_fetch_init(struct hard_gas *gas) MUST_USE;
 
 /// Ask for what the events of a bucket some time ahead need.
 void mf_hard_gas_fetch_ask(struct hard_gas *gas);
 
 /// Begin with some of what was asked for. NULL: nothing is fetched.
 static inline void hard_gas_fetch_some(struct hard_gas_fetch *fetch) {
-    enum { AT_ONCE = 12 };
     if (fetch && fetch->asked - fetch->begun > HARD_GAS_LINES)
         fetch->begun = fetch->asked - HARD_GAS_LINES; // too late for the others
-    for (int n = 0; fetch && n < AT_ONCE && fetch->begun != fetch->asked; n++)
+    for (uint32_t n = 0; fetch && n < fetch->at_once && fetch->begun != fetch->asked; n++)
         __builtin_prefetch(fetch->line[fetch->begun++ % HARD_GAS_LINES]);
 }
