@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define _DEFAULT_SOURCE // madvise
 #include "base/memory.h"
 
 #include <malloc.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+
+/// Let the system use its pages of 2 MB, if it has such, for an array that is not small: a page of
+/// 4 kB is looked up anew at nearly every access to somewhere. Arrays do not begin at such a page:
+/// elements of one number in several arrays would then share the same few places of the caches.
+static void want_large_pages(void *array, size_t bytes) {
+#ifdef MADV_HUGEPAGE
+    enum { NOT_SMALL = 1 << 20, PAGE = 1 << 12 };
+    char *const end = (char *)array + bytes;
+    char *const begin = (char *)array + (PAGE - (uintptr_t)array % PAGE) % PAGE;
+    if (bytes >= NOT_SMALL)
+        (void)madvise(begin, (size_t)(end - begin) / PAGE * PAGE, MADV_HUGEPAGE);
+#else
+    (void)array, (void)bytes;
+#endif
+}
 
 void *mf_memory_uncleared(size_t count, size_t size) {
     if (size != 0 && count > (SIZE_MAX - MEMORY_ALIGNMENT) / size) {
@@ -22,6 +39,15 @@ void *mf_memory_zeroed(size_t count, size_t size) {
     void *array = mf_memory_uncleared(count, size);
     if (array)
         memset(array, 0, count * size);
+    return array;
+}
+
+void *mf_memory_scattered(size_t count, size_t size) {
+    void *array = mf_memory_uncleared(count, size);
+    if (array) {
+        want_large_pages(array, count * size);
+        memset(array, 0, count * size);
+    }
     return array;
 }
 

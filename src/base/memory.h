@@ -13,6 +13,10 @@ enum { MEMORY_ALIGNMENT = 64 };
 /// @return NULL if there is no memory or count × size overflows; the message is set.
 void *mf_memory_zeroed(size_t count, size_t size) MUST_USE;
 
+/// The same for arrays whose elements are visited in no order: in pages of 2 MB, if the system has
+/// such.
+void *mf_memory_scattered(size_t count, size_t size) MUST_USE;
+
 /// The same, but for the zeros: pages that are never written take no memory.
 void *mf_memory_uncleared(size_t count, size_t size) MUST_USE;
 
@@ -49,6 +53,13 @@ void mf_memory_free(void *array);
     TRY(((pointer) = mf_memory_zeroed((count), sizeof *(pointer))) ? STATUS_OK : STATUS_NO_MEMORY)
 #define NEW_ARRAY(pointer, count)                                                                  \
     CHECK(((pointer) = mf_memory_zeroed((count), sizeof *(pointer))) ? STATUS_OK : STATUS_NO_MEMORY)
+
+#define TRY_SCATTERED(pointer, count)                                                              \
+    TRY(((pointer) = mf_memory_scattered((count), sizeof *(pointer))) ? STATUS_OK                  \
+                                                                      : STATUS_NO_MEMORY)
+#define NEW_SCATTERED(pointer, count)                                                              \
+    CHECK(((pointer) = mf_memory_scattered((count), sizeof *(pointer))) ? STATUS_OK                \
+                                                                        : STATUS_NO_MEMORY)
 
 /// Before the declaration of a local array, which begins as NULL: it is freed where its scope ends,
 /// however the function is left.

@@ -38,14 +38,14 @@ static void shape_cells(struct hard_gas *gas, const struct box *box, double diam
 
 static enum status allocate(struct hard_gas *gas) {
     const size_t count = (size_t)gas->count;
-    TRY_ARRAY(gas->body, count);
-    TRY_ARRAY(gas->spare_body, count);
-    TRY_ARRAY(gas->label, count);
-    TRY_ARRAY(gas->spare_label, count);
-    TRY_ARRAY(gas->event, count);
-    TRY_ARRAY(gas->link, count);
-    TRY_ARRAY(gas->first, cells_total(gas->cells) + 1);
-    TRY_ARRAY(gas->place, count);
+    TRY_SCATTERED(gas->body, count);
+    TRY_SCATTERED(gas->spare_body, count);
+    TRY_SCATTERED(gas->label, count);
+    TRY_SCATTERED(gas->spare_label, count);
+    TRY_SCATTERED(gas->event, count);
+    TRY_SCATTERED(gas->link, count);
+    TRY_SCATTERED(gas->first, cells_total(gas->cells) + 1);
+    TRY_SCATTERED(gas->place, count);
     return mf_hard_gas_calendar_init(gas);
 }
 

@@ -29,14 +29,19 @@ struct hard_gas_body {
 
 /// What a body does next.
 struct hard_gas_event {
-    double time;            ///< the earlier of the next two, of the epoch [τ]
-    double collision;       ///< with the partner; INFINITY: none is foreseen
+    double time;            ///< the earlier of collision and border, of the epoch [τ]
     double border;          ///< of its cell, or a wall
     int32_t partner;        ///< body
     uint32_t partner_turns; ///< of the partner, when that was foreseen: if it has more, it is void
-    uint32_t turns;         ///< own changes of velocity, modulo 2³²
     uint16_t cell[3];
     uint8_t axis; ///< of the border
+};
+
+/// What a look at a neighbour needs beside its body.
+struct hard_gas_link {
+    int32_t next;     ///< in its cell, −1: none
+    uint32_t turns;   ///< own changes of velocity, modulo 2³²
+    double collision; ///< with its partner; INFINITY: none is foreseen
 };
 
 /// Of the calendar (hard_gas_calendar.h).
@@ -46,14 +51,17 @@ struct hard_gas_entry {
     int32_t next, other; ///< in its bucket; in the heap: its branches. −1: none
 };
 
+enum { HARD_GAS_WAITING = 8 };
+struct hard_gas_fetch; // hard_gas_fetch.h
 struct hard_gas_calendar {
     int64_t buckets; ///< a power of two
     int32_t *first;  ///< entry of each, shape [buckets], −1: none
     int32_t entries;
-    struct hard_gas_entry *entry; ///< shape [entries]
-    int32_t unused, heap;         ///< the first of them, −1: none
-    int64_t present;              ///< number of the bucket that the heap is of
-    bool fetches;                 ///< what is needed soon is fetched from memory
+    struct hard_gas_entry *entry;             ///< shape [entries]
+    int32_t unused, heap;                     ///< the first of them, −1: none
+    int64_t present;                          ///< number of the bucket that the heap is of
+    int32_t waiting[HARD_GAS_WAITING], waits; ///< bodies whose events go in at the next bucket
+    struct hard_gas_fetch *fetch;             ///< NULL: nothing is fetched ahead
 };
 
 struct hard_gas_label {
@@ -91,7 +99,7 @@ struct hard_gas {
     struct hard_gas_body *body, *spare_body;    ///< shape [count], in the order of cells at first
     struct hard_gas_label *label, *spare_label; ///< shape [count]
     struct hard_gas_event *event;               ///< shape [count]
-    struct cells_link *link;                    ///< shape [count]
+    struct hard_gas_link *link;                 ///< shape [count]
     int32_t *first;                             ///< body of each cell, shape [cells], −1: none
     /// Not saved, but filled again: it then holds events after `calendar_events` of them.
     struct hard_gas_calendar calendar;

@@ -12,6 +12,7 @@
 #pragma once
 
 #include "dynamics/hard_gas.h"
+#include "dynamics/hard_gas_fetch.h"
 
 /// Number of the bucket of a time, counted from the epoch's begin through all years.
 static inline int64_t hard_gas_calendar_number(const struct hard_gas *gas, double time) {
@@ -67,15 +68,31 @@ void mf_hard_gas_calendar_clear(struct hard_gas_calendar *calendar);
 /// Empty the calendar, and put the events of all bodies into it.
 void mf_hard_gas_calendar_fill(struct hard_gas *gas);
 
-/// Who is next stands anywhere in memory, but the calendar knows it before: have it fetched in four
-/// stages, what each leads to some events after it.
-void mf_hard_gas_calendar_fetch(const struct hard_gas *gas);
+/// Put in those that wait; the calendar has all of them, and no void ones, if it must be filled.
+static inline void hard_gas_calendar_insert_waiting(struct hard_gas *gas) {
+    struct hard_gas_calendar *calendar = &gas->calendar;
+    for (int n = 0; n < calendar->waits; n++) {
+        if (calendar->unused < 0) {
+            mf_hard_gas_calendar_fill(gas);
+            break;
+        }
+        hard_gas_calendar_insert_entry(gas, calendar->waiting[n]);
+    }
+    calendar->waits = 0;
+}
 
+/// Put in the event of a body, or, if it is not of the present bucket, let it wait while its bucket
+/// is fetched from memory.
 static inline void hard_gas_calendar_insert(struct hard_gas *gas, int32_t body) {
-    if (gas->calendar.unused < 0)
-        mf_hard_gas_calendar_fill(gas); // has the new event, too, and no void ones
-    else
-        hard_gas_calendar_insert_entry(gas, body);
+    struct hard_gas_calendar *calendar = &gas->calendar;
+    calendar->waiting[calendar->waits++] = body;
+    if (calendar->fetch) {
+        const int64_t number = hard_gas_calendar_number(gas, gas->event[body].time);
+        __builtin_prefetch(hard_gas_calendar_bucket(calendar, number), 1);
+        if (number > calendar->present && calendar->waits < HARD_GAS_WAITING)
+            return;
+    }
+    hard_gas_calendar_insert_waiting(gas);
 }
 
 /// On to the next bucket: what is due goes into the heap.
@@ -115,8 +132,9 @@ static inline int32_t hard_gas_calendar_take(struct hard_gas *gas, double time) 
         }
         if (calendar->present >= last)
             return -1;
+        hard_gas_calendar_insert_waiting(gas);
         hard_gas_calendar_turn(gas);
-        if (calendar->fetches)
-            mf_hard_gas_calendar_fetch(gas);
+        if (calendar->fetch)
+            mf_hard_gas_fetch_ask(gas);
     }
 }

@@ -91,7 +91,7 @@ static inline void take_earlier(const struct hard_gas *gas, struct prediction *p
                                 const struct meeting *meeting) {
     const double wait = meeting->gap > 0 ? meeting->gap / (sqrt(meeting->root) - meeting->b) : 0;
     const double time = prediction->now + wait;
-    if (time < prediction->time && time < gas->event[meeting->body].collision) {
+    if (time < prediction->time && time < gas->link[meeting->body].collision) {
         prediction->time = time;
         prediction->partner = meeting->body;
     }
@@ -146,6 +146,7 @@ static inline void look_around(const struct hard_gas *gas, struct prediction *pr
                 add_cell(gas, &crowd, row * (size_t)gas->cells[2] + (size_t)reach[2].cell[z], x, y,
                          z);
         }
+    hard_gas_fetch_some(gas->calendar.fetch);
     look_at(gas, prediction, reach, &crowd, dimensions);
 }
 
@@ -163,10 +164,10 @@ static inline struct prediction begin_prediction(const struct hard_gas *gas, int
 
 static inline void keep(struct hard_gas *gas, const struct prediction *prediction) {
     struct hard_gas_event *event = &gas->event[prediction->body];
-    event->collision = prediction->time;
+    gas->link[prediction->body].collision = prediction->time;
     event->partner = prediction->partner;
     if (prediction->partner >= 0)
-        event->partner_turns = gas->event[prediction->partner].turns;
+        event->partner_turns = gas->link[prediction->partner].turns;
 }
 
 static inline bool is_wall(const struct hard_gas *gas, int d, int cell, bool up) {
@@ -196,10 +197,11 @@ static inline void predict_border(struct hard_gas *gas, int32_t k, const int dim
 /// Foresee all of a body that has turned, or whose partner has; it is not in the calendar.
 static inline void predict(struct hard_gas *gas, int32_t k, const int dimensions) {
     struct hard_gas_event *event = &gas->event[k];
+    hard_gas_fetch_some(gas->calendar.fetch);
     struct prediction prediction = begin_prediction(gas, k, dimensions);
     look_around(gas, &prediction, -1, 0, dimensions);
     keep(gas, &prediction);
-    event->time = earlier(event->collision, event->border);
+    event->time = earlier(gas->link[k].collision, event->border);
 }
 
 static inline void advance(struct hard_gas *gas, int32_t k, const int dimensions) {
@@ -239,8 +241,8 @@ static inline void collide(struct hard_gas *gas, int32_t i, const int dimensions
     const int32_t pair[2] = {i, gas->event[i].partner};
     for (int n = 0; n < 2; n++) {
         advance(gas, pair[n], dimensions);
-        gas->event[pair[n]].turns++;
-        gas->event[pair[n]].collision = INFINITY;
+        gas->link[pair[n]].turns++;
+        gas->link[pair[n]].collision = INFINITY;
     }
     turn(gas, pair[0], pair[1], dimensions);
     for (int n = 0; n < 2; n++) {
@@ -257,7 +259,7 @@ static void bounce(struct hard_gas *gas, int32_t k, const int dimensions) {
     gas->now.tally.impulse[event->axis] += 2 * gas->label[k].mass * fabs(*v);
     gas->now.tally.wall_hits++;
     *v = -*v;
-    event->turns++;
+    gas->link[k].turns++;
     predict_border(gas, k, dimensions);
     predict(gas, k, dimensions);
 }
@@ -266,9 +268,18 @@ static inline size_t index_of(const struct hard_gas *gas, const uint16_t cell[3]
     return ((size_t)cell[0] * (size_t)gas->cells[1] + cell[1]) * (size_t)gas->cells[2] + cell[2];
 }
 
-/// The first of the chain of a body's cell.
-static inline int32_t *first_of(const struct hard_gas *gas, int32_t k) {
-    return &gas->first[index_of(gas, gas->event[k].cell)];
+/// Into its cell, as the first of its chain, and out of it.
+static inline void enter(struct hard_gas *gas, int32_t k) {
+    int32_t *first = &gas->first[index_of(gas, gas->event[k].cell)];
+    gas->link[k].next = *first;
+    *first = k;
+}
+
+static inline void leave(struct hard_gas *gas, int32_t k) {
+    int32_t *place = &gas->first[index_of(gas, gas->event[k].cell)];
+    while (*place != k)
+        place = &gas->link[*place].next;
+    *place = gas->link[k].next;
 }
 
 /// Into the next cell, and look at those that have come near.
@@ -276,22 +287,23 @@ static inline void cross(struct hard_gas *gas, int32_t k, const int dimensions) 
     struct hard_gas_event *event = &gas->event[k];
     const int d = event->axis, side = gas->body[k].velocity[d] > 0 ? 1 : -1;
     int cell = event->cell[d] + side;
-    cells_leave(first_of(gas, k), gas->link, k);
+    leave(gas, k);
     if (cell < 0 || cell >= gas->cells[d]) {
         cell -= side * gas->cells[d];
         gas->body[k].place[d] -= side * gas->length[d];
         gas->label[k].image[d] += side;
     }
     event->cell[d] = (uint16_t)cell;
-    cells_enter(first_of(gas, k), gas->link, k);
+    enter(gas, k);
     gas->now.tally.crossings++;
+    hard_gas_fetch_some(gas->calendar.fetch);
     struct prediction prediction = begin_prediction(gas, k, dimensions);
-    prediction.time = event->collision;
+    prediction.time = gas->link[k].collision;
     look_around(gas, &prediction, d, side, dimensions);
     if (prediction.partner >= 0)
         keep(gas, &prediction);
     predict_border(gas, k, dimensions);
-    event->time = earlier(event->collision, event->border);
+    event->time = earlier(gas->link[k].collision, event->border);
 }
 
 static inline bool happen(struct hard_gas *gas, double time, uint64_t max, const int dimensions) {
@@ -303,12 +315,12 @@ static inline bool happen(struct hard_gas *gas, double time, uint64_t max, const
         gas->now.time = event->time;
         gas->now.events++;
         gas->now.left--;
-        if (event->collision < event->border &&
-            gas->event[event->partner].turns == event->partner_turns) {
+        if (event->time < event->border &&
+            gas->link[event->partner].turns == event->partner_turns) {
             collide(gas, k, dimensions);
             continue;
         }
-        if (event->collision < event->border) {
+        if (event->time < event->border) {
             gas->now.tally.voids++;
             predict(gas, k, dimensions);
         } else if (gas->walls && is_wall(gas, event->axis, event->cell[event->axis],
@@ -338,8 +350,8 @@ static inline double predict_all(struct hard_gas *gas, const int dimensions) {
 
 void mf_hard_gas_events_begin(struct hard_gas *gas, double rate) {
     for (int32_t k = 0; k < gas->count; k++) {
-        gas->event[k].collision = INFINITY;
-        cells_enter(first_of(gas, k), gas->link, k);
+        gas->link[k].collision = INFINITY;
+        enter(gas, k);
     }
     const double waits = gas->dimensions == 2 ? predict_all(gas, 2) : predict_all(gas, 3);
     if (!(rate > 0))

@@ -95,19 +95,19 @@ static enum status find_cells(struct solvent *solvent) {
 static enum status allocate(struct solvent *solvent, size_t beads) {
     enum status status = STATUS_OK;
     for (int d = 0; d < solvent->box.dimensions; d++) {
-        NEW_ARRAY(solvent->position[d], solvent->count);
-        NEW_ARRAY(solvent->velocity[d], solvent->count);
-        NEW_ARRAY(solvent->spare[d], solvent->count);
-        NEW_ARRAY(solvent->spare[3 + d], solvent->count);
+        NEW_SCATTERED(solvent->position[d], solvent->count);
+        NEW_SCATTERED(solvent->velocity[d], solvent->count);
+        NEW_SCATTERED(solvent->spare[d], solvent->count);
+        NEW_SCATTERED(solvent->spare[3 + d], solvent->count);
     }
-    NEW_ARRAY(solvent->cell, solvent->count);
-    NEW_ARRAY(solvent->start, solvent->cell_total + 1);
+    NEW_SCATTERED(solvent->cell, solvent->count);
+    NEW_SCATTERED(solvent->start, solvent->cell_total + 1);
     for (int part = 0; part < solvent->parts; part++)
-        NEW_ARRAY(solvent->places[part], solvent->cell_total);
+        NEW_SCATTERED(solvent->places[part], solvent->cell_total);
     if (beads == 0)
         goto done;
-    NEW_ARRAY(solvent->first_bead, solvent->cell_total);
-    NEW_ARRAY(solvent->bead_link, beads);
+    NEW_SCATTERED(solvent->first_bead, solvent->cell_total);
+    NEW_SCATTERED(solvent->bead_link, beads);
 done:
     return status;
 }

@@ -34,12 +34,24 @@ static void sort_plane(const struct solvent *solvent, int part) {
     }
 }
 
+static inline void fetch(const struct solvent *solvent, uint32_t place) {
+    for (int d = 0; d < 6; d++)
+        __builtin_prefetch(&solvent->spare[d][place], 1);
+}
+
+/// Particles beyond which memory is not in the caches of a core, and how many ahead a place is
+/// fetched.
+enum { FETCHED_FROM = 30000, AHEAD = 6 };
+
 static void sort_space(const struct solvent *solvent, int part) {
     uint32_t *restrict places = solvent->places[part];
     double *const *to = solvent->spare;
     const size_t end = solvent_part(solvent, solvent->count, part + 1);
+    const size_t fetches = solvent->count >= FETCHED_FROM ? end : 0;
     for (size_t k = solvent_part(solvent, solvent->count, part); k < end; k++) {
         const uint32_t place = places[solvent->cell[k]]++;
+        if (k + AHEAD < fetches)
+            fetch(solvent, places[solvent->cell[k + AHEAD]]);
         for (int d = 0; d < 3; d++) {
             to[d][place] = solvent->position[d][k];
             to[3 + d][place] = solvent->velocity[d][k];

@@ -54,6 +54,33 @@ static void test_event_driven_has_the_same_bits_for_any_number_of_threads(void *
     mf_simulation_clear(&shared);
 }
 
+/// So many bodies that memory is fetched ahead, which must change nothing, beside the same without.
+static void test_event_driven_has_the_same_bits_when_memory_is_fetched_ahead(void **state) {
+    (void)state;
+    for (int dimensions = 2; dimensions <= 3; dimensions++) {
+        struct hard_gas_scene scene;
+        struct simulation fetched, plain;
+        hard_gases_make_mixture(&scene, dimensions, 31000, 0.2, diameters, masses);
+        scene.parameters.walls = dimensions == 2 ? 2 : 0;
+        assert_ok(mf_simulation_init(&fetched, &scene.setup, NULL));
+        assert_ok(mf_simulation_init(&plain, &scene.setup, NULL));
+        assert_non_null(hard_gases_of(&fetched)->calendar.fetch);
+        struct hard_gas *gas = &((struct event_driven *)plain.integrator_state)->gas;
+        mf_memory_free(gas->calendar.fetch);
+        gas->calendar.fetch = NULL;
+        assert_ok(mf_simulation_run(&fetched, 3));
+        restart_simulation(&fetched);
+        assert_ok(mf_simulation_run(&fetched, 3));
+        assert_ok(mf_simulation_run(&plain, 6));
+        restart_assert_same(&fetched, &plain);
+        // A sum over all collisions, in their order.
+        assert_identical(gas->now.tally.virial, hard_gases_of(&fetched)->now.tally.virial);
+        assert_true(gas->now.tally.collisions > 10000);
+        mf_simulation_clear(&fetched);
+        mf_simulation_clear(&plain);
+    }
+}
+
 /// Only where results are taken: velocities change in events alone, and so have the same bits.
 static void test_event_driven_has_the_same_events_for_any_time_step(void **state) {
     (void)state;
@@ -252,6 +279,7 @@ int main(void) {
         cmocka_unit_test(test_event_driven_comes_back_when_time_is_reversed),
         cmocka_unit_test(test_event_driven_masters_events_at_one_time),
         cmocka_unit_test(test_event_driven_places_particles_where_sequential_addition_cannot),
+        cmocka_unit_test(test_event_driven_has_the_same_bits_when_memory_is_fetched_ahead),
         cmocka_unit_test(test_event_driven_names_the_pair_that_overlaps),
         cmocka_unit_test(test_event_driven_refuses_forces),
     };
