@@ -106,14 +106,16 @@ static double mean_square(const double *values, size_t count) {
 
 /// A curve: its distance within a tenth, of which no more than half of the square is the samples'
 /// own noise, so that it tells of the target and of what was found. Four replicas know an error
-/// badly: it is no less than that of the noise. A number: as well as that of the target.
+/// badly: it is no less than that of the noise. A number: as well as that of the target. An error
+/// of 0 is not known.
 static bool knows_distance(const struct target *target, const double *own_error,
                            const struct target_distance *distance, double error, bool number) {
     const double own = mean_square(own_error, target->count);
     const double of_target = mean_square(target->error, target->count);
     if (number)
-        return own <= of_target || of_target == 0;
-    return error <= enough_distance * distance->rms && own <= 0.5 * distance->rms * distance->rms;
+        return own > 0 && own <= of_target;
+    return own > 0 && error <= enough_distance * distance->rms &&
+           own <= 0.5 * distance->rms * distance->rms;
 }
 
 static enum status knows_distances(struct measurement *replicas, size_t count, bool *known) {

@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { PARTICLES = 600, BINS = 25, SAMPLES = 240, EVERY = 20, SEEDS = 12 };
+enum { PARTICLES = 600, BINS = 100, SAMPLES = 240, EVERY = 20, SEEDS = 12 };
 static const double time_step = 0.02;
 
 static void ignore(void *context, const struct inverse_progress *progress) {
@@ -26,7 +26,7 @@ static void verify(const double target[BINS], uint64_t seed,
         wanted[k] = target[k];
     fluid_groot_warren(&fluid, PARTICLES, time_step);
     struct inverse_problem problem = {.scene = fluid.setup, .seed = seed, .threads = 2};
-    problem.compared.bins = (struct rdf_bins){0, 0.04, BINS};
+    problem.compared.bins = (struct rdf_bins){0, 0.01, BINS};
     problem.compared.target[TARGET_RDF] =
         (struct target){.count = BINS, .value = wanted, .error = errors};
     assert_ok(mf_verify(&problem, &fluid.potential, fluid.setup.omega, parameters, &listener,
@@ -41,14 +41,14 @@ static struct verify_parameters plan(int replicas, bool end_early) {
         .plan = {.equilibration = 500, .samples = SAMPLES, .every = EVERY}};
 }
 
-/// g of another simulation, twice as long, wrong by a wave of 0.02.
-static void make_target(double target[BINS]) {
+/// g of another simulation, twice as long, wrong by a wave.
+static void make_target(double wave, double target[BINS]) {
     static const double zero[BINS];
     struct verification verification;
     verify(zero, 99, &(struct verify_parameters){.replicas = 8, .plan = plan(8, false).plan},
            &verification);
     for (int k = 0; k < BINS; k++)
-        target[k] = verification.observed.value[TARGET_RDF][k] + 0.02 * cos(0.8 * k);
+        target[k] = verification.observed.value[TARGET_RDF][k] + wave * cos(0.2 * k);
     mf_verify_clear(&verification);
 }
 
@@ -59,7 +59,7 @@ static void test_verification_ends_when_it_knows_enough(void **state) {
     const struct verify_parameters parameters = plan(4, true);
     double target[BINS], rms = 0, rms_squares = 0, temperature = 0, temperature_squares = 0;
     uint64_t steps = 0;
-    make_target(target);
+    make_target(0.04, target);
     for (int seed = 0; seed < SEEDS; seed++) {
         struct verification verification;
         verify(target, (uint64_t)seed + 1, &parameters, &verification);
@@ -84,6 +84,41 @@ static void test_verification_ends_when_it_knows_enough(void **state) {
     assert_true((double)steps < 0.8 * all);
 }
 
+/// A sixth of the samples does not know the temperature within a third of a per cent: all are
+/// taken.
+static void test_verification_that_does_not_know_goes_to_its_end(void **state) {
+    (void)state;
+    struct verify_parameters few = plan(4, true);
+    double target[BINS];
+    make_target(0.04, target);
+    few.plan.samples = SAMPLES / 6;
+    for (int seed = 0; seed < 3; seed++) {
+        struct verification verification;
+        verify(target, (uint64_t)seed + 1, &few, &verification);
+        assert_int_equal(verification.engine_steps,
+                         4 * (few.plan.equilibration + few.plan.samples * EVERY));
+        mf_verify_clear(&verification);
+    }
+}
+
+/// Of many bins the rms of noise alone is known soon. It says nothing of the target, and more
+/// samples make it less: all are taken.
+static void test_noise_is_not_known(void **state) {
+    (void)state;
+    const struct verify_parameters parameters = plan(4, true);
+    struct verification verification;
+    double target[BINS];
+    make_target(0, target);
+    verify(target, 1, &parameters, &verification);
+    print_message("rms %.4f(%.0f)\n", verification.distance[TARGET_RDF].rms,
+                  1e4 * verification.distance_error[TARGET_RDF]);
+    assert_true(verification.distance_error[TARGET_RDF] <
+                0.1 * verification.distance[TARGET_RDF].rms);
+    assert_int_equal(verification.engine_steps,
+                     4 * (parameters.plan.equilibration + parameters.plan.samples * EVERY));
+    mf_verify_clear(&verification);
+}
+
 /// Looks change no bit: a single simulation never knows its error, and goes to its end.
 static void test_looks_leave_no_trace(void **state) {
     (void)state;
@@ -103,6 +138,8 @@ static void test_looks_leave_no_trace(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_verification_ends_when_it_knows_enough),
+        cmocka_unit_test(test_verification_that_does_not_know_goes_to_its_end),
+        cmocka_unit_test(test_noise_is_not_known),
         cmocka_unit_test(test_looks_leave_no_trace),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
