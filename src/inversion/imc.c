@@ -12,14 +12,18 @@ static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "m
                                       "directions", NULL};
 
 /// C is known well enough if a Newton step leaves at most this share of the excess by the noise of
-/// C: sqrt(directions/n) of a step in so many directions, by n independent samples.
+/// C: sqrt(directions/n) of a step in so many directions that are sampled, by n independent
+/// samples.
 static const double well_known = 1.0 / 3;
 
 bool mf_imc_is_known(const struct inversion *inversion, double directions) {
-    double independent = INFINITY;
-    for (size_t s = 0; s < inversion->states; s++)
-        independent = fmin(independent, inversion->state[s].response.independent);
-    return mf_inversion_is_near(inversion) || directions < well_known * well_known * independent;
+    bool known = true;
+    for (size_t s = 0; s < inversion->states; s++) {
+        const struct inversion_response *response = &inversion->state[s].response;
+        known = known && fmin(directions, (double)response->functions) <
+                             well_known * well_known * response->independent;
+    }
+    return mf_inversion_is_near(inversion) || known;
 }
 
 /// The strength of the regularisation: 0, by the noise (mf_imc_solve), or that of the band's prior,
@@ -43,7 +47,7 @@ enum status mf_imc_response_variance(const struct inversion_state *state, double
     const size_t known = state->grid.known;
     const double *covariance = state->response.covariance;
     const double temperature = state->problem->scene.temperature;
-    const double independent = state->response.independent;
+    const double *shared = state->response.shared, independent = state->response.independent;
     double squares = 0, *logarithms = NULL;
     NEW_ARRAY(logarithms, state->grid.points);
     mf_ibi_logarithms(state, logarithms);
@@ -51,7 +55,7 @@ enum status mf_imc_response_variance(const struct inversion_state *state, double
         squares += covariance[a * known + a] *
                    pow(logarithms[state->grid.known_point[a]] / temperature, 2);
     for (size_t a = 0; a < known; a++)
-        variance[a] = (covariance[a * known + a] * squares + state->excess[a] * state->excess[a]) *
+        variance[a] = (shared[a] * squares + state->excess[a] * state->excess[a]) *
                       state->bin_inefficiency[a] / (state->inefficiency * independent);
 done:
     mf_memory_free(logarithms);
@@ -76,7 +80,7 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
     const size_t *point = first->grid.known_point;
     struct imc_system system = first->grid.groups > 0 ? equations->of_response : equations->system;
     struct imc_solution solution;
-    double *x = NULL;
+    double *x = NULL, *phi = NULL;
     if (mf_inversion_is_low_rank(inversion))
         return step_low_rank(inversion, step);
     if (targets_ask(targets, TARGET_PRESSURE) && !equations->reduced) {
@@ -84,6 +88,10 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
         system.wanted = *targets->target[TARGET_PRESSURE].value - first->pressure.value;
     }
     NEW_ARRAY(x, system.size);
+    NEW_ARRAY(phi, system.size);
+    for (size_t a = 0; a < system.size; a++)
+        phi[a] = inversion->course.phi[point[a]];
+    system.phi = phi;
     CHECK(mf_imc_solve(&system, choose_strength(inversion), x, &solution));
     for (size_t a = 0; a < system.size; a++)
         step[point[a]] = x[a];
@@ -92,6 +100,7 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
     extra[2] = solution.directions;
 done:
     mf_memory_free(x);
+    mf_memory_free(phi);
     return status;
 }
 

@@ -118,6 +118,22 @@ void mf_imc_solve_prior(const struct imc_system *s, gsl_matrix *rows) {
         gsl_matrix_set(rows, n - 1 + k, k, sqrt(ridge));
 }
 
+/// What the last difference of a curve of pairs leaves of phi is to be made up for by x.
+static void fill_ends(struct workspace *w, double strength) {
+    const struct imc_system *s = w->system;
+    size_t end = s->blocks == 0 ? s->size : 0, begin = 0;
+    for (size_t b = 0; b == 0 || b < s->blocks; b++, begin = end) {
+        end += s->blocks > 0 ? s->block[b] : 0;
+        if (end - begin < 2 || (s->shape && s->shape[b].bend > 0))
+            continue;
+        const gsl_vector_const_view phi = gsl_vector_const_view_array(s->phi, s->size);
+        const gsl_vector_const_view row = gsl_matrix_const_row(w->rows, s->size + end - 2);
+        double bend;
+        gsl_blas_ddot(&row.vector, &phi.vector, &bend);
+        gsl_vector_set(w->rhs, s->size + end - 2, -sqrt(strength) * bend);
+    }
+}
+
 /// Sum of squares of the rows begin … end − 1.
 static double square_rows(const gsl_matrix *rows, size_t begin, size_t end) {
     double sum = 0;
@@ -306,6 +322,8 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
     solution->strength = strength;
     if (!(strength > 0))
         CHECK(find_strength(&w, &solution->strength));
+    else if (system->phi)
+        fill_ends(&w, strength);
     solution->misfit = solve_at(&w, solution->strength);
     solution->directions = count_directions(&w);
     for (size_t k = 0; k < n; k++)

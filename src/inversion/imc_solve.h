@@ -32,6 +32,8 @@ struct imc_system {
     double spacing;           ///< of the bins [λ]
     const double *constraint; ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
     double wanted;
+    const double *phi; ///< what x is added to, shape [size]: a curve of pairs and x end at 0
+                       ///< together, where `strength` is given; NULL: x does
 };
 
 struct imc_solution {
@@ -62,5 +64,7 @@ void mf_imc_solve_rows(const struct imc_system *system, gsl_matrix *response, gs
 /// a tenth of λ, or over the bins of a shape, and sqrt(ρ). A curve of pairs ends at 0 half a
 /// spacing beyond its last bin, at the cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is
 /// free but for ρ; below its first bin it is free: no row reaches there. Each of several curves has
-/// its own. Of the system `size`, `spacing`, blocks and shapes are read.
+/// its own. Where a step that knows nothing of the cutoff has left a jump there, smooth steps would
+/// keep it: the last difference is that of phi + x. Of the system `size`, `spacing`, blocks and
+/// shapes are read.
 void mf_imc_solve_prior(const struct imc_system *system, gsl_matrix *rows);

@@ -11,6 +11,7 @@
 enum status mf_inversion_band_init(struct inversion_band *band, size_t known, size_t points) {
     enum status status = STATUS_OK;
     *band = (struct inversion_band){0};
+    NEW_ARRAY(band->inverse, known * known);
     NEW_ARRAY(band->covariance, known * known);
     NEW_ARRAY(band->error, points);
     NEW_ARRAY(band->without_ramp, points);
@@ -20,6 +21,7 @@ done:
 }
 
 void mf_inversion_band_clear(struct inversion_band *band) {
+    mf_memory_free(band->inverse);
     mf_memory_free(band->covariance);
     mf_memory_free(band->error);
     mf_memory_free(band->without_ramp);
@@ -70,9 +72,7 @@ done:
 
 /// Σ ← P Σ Pᵀ with P = 1 − v ℓᵀ: that of curves from which ℓ·x times the change v is taken off,
 /// ℓ·v = 1.
-static void take_off(struct inversion *inversion, const double *v, const double *l) {
-    const size_t n = inversion_grid(inversion)->known;
-    double *covariance = inversion->course.band.covariance;
+static void take_off(double *covariance, size_t n, const double *v, const double *l) {
     for (int side = 0; side < 2; side++)
         for (size_t b = 0; b < n; b++) {
             const size_t along = side ? n : 1, across = side ? 1 : n;
@@ -87,7 +87,7 @@ static void take_off(struct inversion *inversion, const double *v, const double 
 /// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
 /// the errors are those of U less its mean over the target. And f of local densities is known but
 /// for its slope: they are those of the convention.
-static enum status take_conventions_off(struct inversion *inversion) {
+static enum status take_conventions_off(const struct inversion *inversion, double *covariance) {
     const struct potential_grid *grid = inversion_grid(inversion);
     OWNED double *constant = NULL, *mean = NULL;
     size_t first = grid->pairs_known;
@@ -102,10 +102,10 @@ static enum status take_conventions_off(struct inversion *inversion) {
             constant[first + a] = 1;
             mean[first + a] = own->target[own->first + a] / sum;
         }
-        take_off(inversion, constant, mean);
+        take_off(covariance, grid->known, constant, mean);
     }
     if (grid->shared.change)
-        take_off(inversion, grid->shared.change, grid->shared.weight);
+        take_off(covariance, grid->known, grid->shared.change, grid->shared.weight);
     return STATUS_OK;
 }
 
@@ -121,17 +121,21 @@ static void weigh_ramp(const struct inversion *inversion, double *weight) {
         weight[a] /= squares;
 }
 
-/// out = Σ v; returns v·Σ v.
-static double spread(const struct inversion *inversion, const double *v, double *out) {
-    const size_t n = inversion_grid(inversion)->known;
-    double variance = 0;
+/// out = M v; returns v·M v.
+static double multiply(const double *matrix, size_t n, const double *v, double *out) {
+    double product = 0;
     for (size_t a = 0; a < n; a++) {
         out[a] = 0;
         for (size_t b = 0; b < n; b++)
-            out[a] += inversion->course.band.covariance[a * n + b] * v[b];
-        variance += v[a] * out[a];
+            out[a] += matrix[a * n + b] * v[b];
+        product += v[a] * out[a];
     }
-    return variance;
+    return product;
+}
+
+/// out = Σ v; returns v·Σ v.
+static double spread(const struct inversion *inversion, const double *v, double *out) {
+    return multiply(inversion->course.band.covariance, inversion_grid(inversion)->known, v, out);
 }
 
 /// Σ ← Σ + factor u uᵀ.
@@ -142,7 +146,7 @@ static void add_square(struct inversion *inversion, double factor, const double 
             inversion->course.band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// The step from here: the most probable one, x = Σ Bᵀ L⁻¹ excess with V as large as Birge's
+/// The step from here: the most probable one, x = H⁻¹ Bᵀ L⁻¹ excess with W as large as Birge's
 /// factor has it, or that of the coefficients.
 static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
                              double birge, double *step) {
@@ -161,7 +165,7 @@ static enum status find_step(const struct inversion *inversion, const struct imc
     CHECK(response && excess && asked ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, excess);
     gsl_blas_dgemv(CblasTrans, 1 / birge, response, excess, 0, asked);
-    spread(inversion, asked->data, step);
+    multiply(inversion->course.band.inverse, n, asked->data, step);
 done:
     gsl_matrix_free(response);
     gsl_vector_free(excess);
@@ -207,14 +211,20 @@ static void add_walk(struct inversion *inversion, double *scratch) {
     add_square(inversion, 1, scratch);
 }
 
-/// What a pressure with its error adds: Σ ← Σ − Σp (Σp)ᵀ/(p·Σp + σ_P²).
+/// A pressure with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) + σ_P² k kᵀ with
+/// k = u/(p·u + σ_P²).
 static void add_pressure(struct inversion *inversion, double *scratch) {
-    const double open = spread(inversion, inversion->state->pressure.slope, scratch);
-    inversion->course.band.ramp.pressure_open = sqrt(open);
+    const double *slope = inversion->state->pressure.slope;
+    const size_t n = inversion_grid(inversion)->known;
+    inversion->course.band.ramp.pressure_open = sqrt(spread(inversion, slope, scratch));
     if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE) || inversion->equations.reduced)
         return; // it is among the equations
     const double noise = inversion->assessment.distance[TARGET_PRESSURE].noise;
-    add_square(inversion, -1 / (open + noise * noise), scratch);
+    const double along = multiply(inversion->course.band.inverse, n, slope, scratch);
+    for (size_t a = 0; a < n; a++)
+        scratch[a] /= along + noise * noise;
+    take_off(inversion->course.band.covariance, n, scratch, slope);
+    add_square(inversion, noise * noise, scratch);
 }
 
 double mf_inversion_band_of_counts(double counts) {
@@ -388,6 +398,49 @@ double mf_inversion_band_prior(const struct inversion *inversion) {
            pow(inversion->problem->scene.temperature, 2);
 }
 
+/// Σ = H⁻¹ (TᵀV T/birge + prior) H⁻¹.
+static enum status find_covariance(struct inversion *inversion, const struct imc_system *system,
+                                   double birge) {
+    enum status status = STATUS_OK;
+    const size_t n = system->size;
+    const double unit = pow(system->temperature, -2);
+    gsl_matrix *prior = gsl_matrix_alloc(2 * n - 1, n), *half = gsl_matrix_alloc(n, n);
+    gsl_matrix *middle = gsl_matrix_alloc(n, n);
+    const gsl_matrix_const_view scatter =
+        gsl_matrix_const_view_array(inversion->equations.scatter, n, n);
+    const gsl_matrix_const_view inverse =
+        gsl_matrix_const_view_array(inversion->course.band.inverse, n, n);
+    gsl_matrix_view to = gsl_matrix_view_array(inversion->course.band.covariance, n, n);
+    CHECK(prior && half && middle ? STATUS_OK : STATUS_NO_MEMORY);
+    mf_imc_solve_prior(system, prior);
+    gsl_matrix_memcpy(middle, &scatter.matrix);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1 / birge, middle);
+    gsl_blas_dsymm(CblasLeft, CblasLower, 1, middle, &inverse.matrix, 0, half);
+    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &inverse.matrix, half, 0, &to.matrix);
+done:
+    gsl_matrix_free(prior);
+    gsl_matrix_free(half);
+    gsl_matrix_free(middle);
+    return status;
+}
+
+/// H⁻¹ and Σ of the potential in bins, or of coefficients.
+static enum status find_matrices(struct inversion *inversion, const struct imc_system *system,
+                                 double birge) {
+    struct inversion_band *band = &inversion->course.band;
+    const size_t n = system->size;
+    if (inversion->state->basis.count > 0) {
+        TRY(mf_inversion_basis_covariance(inversion->state, band->covariance,
+                                          &band->ramp.directions));
+        memcpy(band->inverse, band->covariance, n * n * sizeof *band->inverse);
+    } else {
+        TRY(mf_inversion_band_covariance(system, birge, band->inverse, &band->ramp.directions));
+        TRY(find_covariance(inversion, system, birge));
+    }
+    TRY(take_conventions_off(inversion, band->inverse));
+    return take_conventions_off(inversion, band->covariance);
+}
+
 enum status mf_inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = inversion_grid(inversion);
@@ -402,18 +455,13 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     NEW_ARRAY(shape, grid->blocks);
     mf_inversion_smooth_shapes(inversion, shape);
     system.shape = shape;
-    CHECK(inversion->state->basis.count > 0
-              ? mf_inversion_basis_covariance(inversion->state, band->covariance,
-                                              &band->ramp.directions)
-              : mf_inversion_band_covariance(&system, birge, band->covariance,
-                                             &band->ramp.directions));
-    CHECK(take_conventions_off(inversion));
+    CHECK(find_matrices(inversion, &system, birge));
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, birge, step));
     find_drifts(inversion, step, weight, scratch);
     if (inversion->course.has_walked) {
         add_walk(inversion, scratch);
-        CHECK(take_conventions_off(inversion));
+        CHECK(take_conventions_off(inversion, band->covariance));
     }
     add_drift(inversion, weight, scratch);
     add_pressure(inversion, scratch);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file How well the data of an inversion determine its potential.
 ///
-/// The excess of S, with its covariance V = L Lᵀ by target and samples, determines the potential by
+/// The excess of S, with its covariance W = L Lᵀ by target and samples, determines the potential by
 ///   F = Bᵀ B,   B = L⁻¹ C/k_B T,
 /// as in mf_imc_solve, whatever step led there. What the data leave open is held by the smoothness
 /// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or ten k_B T in
-/// all, counts as one standard error. The covariance of Φ is (F + prior)⁻¹. U of groups may bend
+/// all, counts as one standard error: the most probable step is x = H⁻¹ Bᵀ L⁻¹ excess, H = F +
+/// prior. Its error is that which the excess has if the errors of a target are each bin's own, V
+/// (inversion_noise.h), Σ = H⁻¹ (TᵀV T + prior) H⁻¹ with T = W⁻¹C/k_B T. U of groups may bend
 /// more where its target does, and the result is made as smooth as that (inversion_smooth.h).
 ///
 /// Where more of the excess is left than V says, χ² by bin above 1, V is that much larger: a fit
@@ -29,10 +31,9 @@
 /// it, however smooth the prior, and so does that of the samples: where these have few counts, as
 /// in the first bins of a core, the error of Φ is at least theirs (mf_inversion_band_of_counts).
 ///
-/// C is itself sampled. Its noise adds to C·C, but what is least known follows the smallest
-/// eigenvalues, and those of a sampled covariance come out too small: the band of few samples is
-/// wider than by the exact C (test_inversion_band: the ramp's error by 27 % with twice as many
-/// independent samples as bins, by 4 % with 32 times as many), and needs no correction.
+/// C is itself sampled, in few functions (inversion_covariance.h). What is least known follows the
+/// smallest eigenvalues, and those of a sampled covariance come out too small: the band of few
+/// samples is wider than by the exact C, and needs no correction.
 #pragma once
 
 #include "inversion/imc_solve.h"
@@ -49,7 +50,8 @@ struct inversion_band_drift {
 };
 
 struct inversion_band {
-    double *covariance;   ///< of Φ in the known bins, shape [known, known]
+    double *inverse;      ///< H⁻¹, shape [known, known]
+    double *covariance;   ///< of Φ in the known bins, the same shape
     double *error;        ///< standard errors, shape [points]; 0 where Φ is set
     double *without_ramp; ///< if A of the ramp A (1 − r/r_c) were known, shape [points]
     double
@@ -71,7 +73,7 @@ double mf_inversion_band_of_counts(double counts);
 /// test_inversion_band.
 double mf_inversion_band_min_error(const struct inversion *inversion, size_t a);
 
-/// (F + prior)⁻¹.
+/// H⁻¹ = (F + prior)⁻¹.
 /// @param[in]  system      size, blocks, C, variances and what bins have in common, temperature,
 ///                         spacing
 /// @param[in]  birge       by which the covariance V of the excess is larger than the system says

@@ -150,7 +150,7 @@ static void fill_matrices(struct inversion_basis *basis, const struct inversion_
         for (size_t b = 0; b < known; b++)
             for (size_t k = 0; k < count; k++)
                 covered[k] +=
-                    state->response.covariance[a * known + b] * basis->value[b * count + k];
+                    state->response.sampled[a * known + b] * basis->value[b * count + k];
         for (size_t k = 0; k < count; k++)
             for (size_t n = 0; n < count; n++) {
                 basis->hessian[k * count + n] += row[k] * covered[n];

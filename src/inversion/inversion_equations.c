@@ -6,8 +6,10 @@
 #include "inversion/method_steps.h"
 #include "observe/kirkwood_buff_observable.h"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <string.h>
 
 struct imc_system mf_inversion_equations_of(const struct inversion_state *state) {
     return (struct imc_system){.size = state->grid.known,
@@ -45,6 +47,7 @@ enum status mf_inversion_equations_init(struct inversion_equations *equations,
     equations->states = states;
     equations->reduced = states > 1 || state->kirkwood_buff.pairs > 0;
     equations->system = equations->of_response = mf_inversion_equations_of(state);
+    NEW_ARRAY(equations->scatter, state->grid.known * state->grid.known);
     NEW_ARRAY(equations->noise, state->grid.known * state->grid.known);
     if (groups) {
         NEW_ARRAY(equations->response_variance, state->grid.known);
@@ -59,6 +62,7 @@ done:
 }
 
 void mf_inversion_equations_clear(struct inversion_equations *equations) {
+    mf_memory_free(equations->scatter);
     mf_memory_free(equations->noise);
     mf_memory_free(equations->noise_of_response);
     mf_memory_free(equations->response_variance);
@@ -93,7 +97,7 @@ static enum status fill_bins(const struct inversion_state *state, struct filling
     struct imc_system own = mf_inversion_equations_of(state);
     if (to->response_variance)
         TRY(mf_imc_response_variance(state, to->response_variance));
-    mf_inversion_noise_find(state, to->response_variance, to->noise);
+    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, to->response_variance, to->noise);
     own.noise = to->noise;
     mf_imc_solve_rows(&own, to->response, to->excess);
     for (size_t a = 0; a < own.size; a++, to->row++) {
@@ -184,21 +188,77 @@ done:
     return status;
 }
 
+/// Add what a state's rows scatter by: TᵀV T with T = W⁻¹C/k_B T.
+static enum status add_scatter(const struct inversion_state *state, double *scatter) {
+    enum status status = STATUS_OK;
+    const size_t known = state->grid.known;
+    struct imc_system own = mf_inversion_equations_of(state);
+    gsl_matrix *t = gsl_matrix_alloc(known, known), *factor = gsl_matrix_alloc(known, known);
+    gsl_matrix_view to = gsl_matrix_view_array(scatter, known, known);
+    CHECK(t && factor ? STATUS_OK : STATUS_NO_MEMORY);
+    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, NULL, factor->data);
+    own.noise = factor->data;
+    mf_imc_solve_rows(&own, t, NULL);
+    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, factor, t);
+    for (size_t a = 0; a < known; a++)
+        for (size_t b = 0; b < known && !state->grid.seen[a]; b++)
+            gsl_matrix_set(t, a, b, 0);
+    mf_inversion_noise_find(state, INVERSION_NOISE_OF_BINS, NULL, factor->data);
+    gsl_blas_dtrmm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, factor, t);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, t, 1, &to.matrix);
+done:
+    gsl_matrix_free(t);
+    gsl_matrix_free(factor);
+    return status;
+}
+
+/// That of numbers, whose rows have no noise in common: s sᵀ/σ².
+static void add_scatter_of_number(const struct inversion_state *state, const double *slope,
+                                  double wide, double birge, double *scatter) {
+    const size_t known = state->grid.known;
+    for (size_t a = 0; a < known; a++)
+        for (size_t b = 0; b <= a; b++)
+            scatter[a * known + b] += slope[a] * slope[b] * birge / (wide * wide);
+}
+
+static enum status fill_scatter(const struct inversion_equations *equations, double birge) {
+    const size_t known = equations->state->grid.known;
+    memset(equations->scatter, 0, known * known * sizeof *equations->scatter);
+    for (size_t s = 0; s < equations->states; s++) {
+        const struct inversion_state *state = &equations->state[s];
+        const struct targets *targets = &state->problem->targets;
+        const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
+        const struct target *integrals = &targets->target[mf_kirkwood_buff_kind()];
+        TRY(add_scatter(state, equations->scatter));
+        if (equations->reduced && targets_ask(targets, TARGET_PRESSURE))
+            add_scatter_of_number(state, state->pressure.slope, state->assessment.pressure_reach,
+                                  birge, equations->scatter);
+        for (size_t pair = 0; pair < kb->pairs; pair++)
+            if (isfinite(integrals->value[pair]))
+                add_scatter_of_number(state, kb->slope + pair * known,
+                                      hypot(kb->error[pair], integrals->error[pair]), birge,
+                                      equations->scatter);
+    }
+    return STATUS_OK;
+}
+
 enum status mf_inversion_equations_fill(struct inversion_equations *equations, double birge) {
     const struct inversion_state *state = equations->state;
     double *variance = equations->response_variance;
+    TRY(fill_scatter(equations, birge));
     if (equations->reduced) {
         TRY(reduce(equations, birge, NULL, &equations->rows, &equations->system));
         return variance ? reduce(equations, birge, variance, &equations->rows_of_response,
                                  &equations->of_response)
                         : STATUS_OK;
     }
-    mf_inversion_noise_find(state, NULL, equations->noise);
+    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, NULL, equations->noise);
     equations->system.noise = equations->noise;
     if (variance == NULL)
         return STATUS_OK;
     TRY(mf_imc_response_variance(state, variance));
-    mf_inversion_noise_find(state, variance, equations->noise_of_response);
+    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, variance,
+                            equations->noise_of_response);
     equations->of_response.noise = equations->noise_of_response;
     return STATUS_OK;
 }

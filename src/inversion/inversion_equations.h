@@ -27,7 +27,9 @@ struct inversion_equations {
     struct imc_system system;      ///< with the noise of the excess
     struct imc_system of_response; ///< of fits with groups: with that of the response, too
     struct inversion_rows rows, rows_of_response;
-    double *noise;             ///< of mf_inversion_noise_find, shape [known, known]
+    double *scatter; ///< what Bᵀ L⁻¹ excess of `system` scatters by, if the errors of
+                     ///< targets are each bin's own, shape [known, known]
+    double *noise;   ///< of mf_inversion_noise_find, shape [known, known]
     double *noise_of_response; ///< the same with mf_imc_response_variance; NULL without groups
     double *response_variance; ///< shape [known]; NULL without groups
 };

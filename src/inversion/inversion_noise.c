@@ -7,15 +7,18 @@
 #include <math.h>
 #include <string.h>
 
-/// The samples' part: variances as they are, and the correlations of C.
-static void fill_samples(const struct inversion_state *state, double *v) {
+/// What has the correlations of C: the samples' part, or the target's, too.
+static void fill_samples(const struct inversion_state *state, enum inversion_noise_kind kind,
+                         double *v) {
     const size_t known = state->grid.known;
     const bool *seen = state->grid.seen;
     const double *c = state->response.covariance;
     const double independent = state->response.independent;
-    const double counts = independent / (independent + (double)known);
+    const double counts = independent / (independent + (double)state->response.functions);
     for (size_t a = 0; a < known; a++)
-        v[a * known + a] = fmax(0, state->variance[a] - mf_inversion_target_variance(state, a));
+        v[a * known + a] = fmax(
+            0, state->variance[a] -
+                   (kind == INVERSION_NOISE_OF_BINS ? mf_inversion_target_variance(state, a) : 0));
     for (size_t a = 0; a < known; a++)
         for (size_t b = 0; b < a; b++) {
             const double own = c[a * known + a] * c[b * known + b];
@@ -53,13 +56,15 @@ static void take_diagonal(const struct inversion_state *state, const double *mor
         factor[a * known + a] = sqrt(factor[a * known + a]);
 }
 
-void mf_inversion_noise_find(const struct inversion_state *state, const double *more,
-                             double *factor) {
+void mf_inversion_noise_find(const struct inversion_state *state, enum inversion_noise_kind kind,
+                             const double *more, double *factor) {
     const size_t known = state->grid.known;
     gsl_matrix_view v = gsl_matrix_view_array(factor, known, known);
-    fill_samples(state, factor);
+    fill_samples(state, kind, factor);
     add_own(state, more, factor);
     add_common(state, factor);
     if (gsl_linalg_cholesky_decomp1(&v.matrix) != GSL_SUCCESS)
         take_diagonal(state, more, factor);
+    for (size_t a = 0; a < known; a++)
+        memset(factor + a * known + a + 1, 0, (known - a - 1) * sizeof *factor);
 }

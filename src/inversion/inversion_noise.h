@@ -3,19 +3,32 @@
 ///
 /// The samples' part has the correlations of S itself: bins beside each other scatter together, and
 /// what hardly any potential changes hardly scatters either. So the same samples tell the ramp, and
-/// the pressure with it, many times better than if their bins scattered by themselves. The errors
-/// of a target are its bins' own, but for that of the factor of a pair type.
+/// the pressure with it, many times better than if their bins scattered by themselves.
 ///
-/// C of n independent samples of N bins counts as N more of its diagonal: the mean of an inverse
-/// Wishart distribution whose prior is that (A. Gelman et al., Bayesian Data Analysis (2013),
-/// section 3.6), so that V has an inverse.
+/// A target gives an error for each bin, and not what they have in common. Mostly it is the mean of
+/// samples, too, of the same liquid: then its noise has the correlations of S (W). A figure's, or a
+/// rounded table's, is each bin's own (V). Steps are made with W, which is the maximum likelihood
+/// of samples: minus the logarithm of that is the relative entropy, which is convex in the
+/// potential, and C enters it as such and not as C², so that its noise is not taken for
+/// information. Bands are those of such steps by V, which is the larger noise of what g hardly
+/// sees: where W is true they are too wide, where V is true such a step costs little. Of a
+/// repulsive shoulder a step with W over 1.1 k_B T left 0.05, with V 0.9; the error of its ramp by
+/// V was 0.66 and 0.51.
+///
+/// C of n independent samples in N functions counts as N more of its diagonal: the mean of an
+/// inverse Wishart distribution whose prior is that (A. Gelman et al., Bayesian Data Analysis
+/// (2013), section 3.6), so that V has an inverse.
 #pragma once
 
 struct inversion_state;
 
-/// The lower Cholesky factor L of V = L Lᵀ. A bin of which the target does not tell is by itself.
+/// Whose errors a target's bins have.
+enum inversion_noise_kind { INVERSION_NOISE_OF_SAMPLES, INVERSION_NOISE_OF_BINS };
+
+/// The lower Cholesky factor L of W or V = L Lᵀ. A bin of which the target does not tell is by
+/// itself.
 /// @param[in]  more    variance of each bin beside these, shape [known]; NULL: none
-/// @param[out] factor  shape [known, known]
+/// @param[out] factor  shape [known, known]; above its diagonal 0
 /// Tested: test_inversion_noise.
-void mf_inversion_noise_find(const struct inversion_state *state, const double *more,
-                             double *factor);
+void mf_inversion_noise_find(const struct inversion_state *state, enum inversion_noise_kind kind,
+                             const double *more, double *factor);

@@ -2,6 +2,7 @@
 #include "inversion/inversion_response.h"
 
 #include "base/memory.h"
+#include "inversion/inversion_covariance.h"
 #include "inversion/inversion_state.h"
 
 #include <math.h>
@@ -12,7 +13,9 @@ enum status mf_inversion_response_init(struct inversion_state *state) {
     const struct potential_grid *grid = &state->grid;
     struct inversion_response *response = &state->response;
     size_t size = 0;
+    NEW_ARRAY(response->sampled, grid->known * grid->known);
     NEW_ARRAY(response->covariance, grid->known * grid->known);
+    NEW_ARRAY(response->shared, grid->known);
     NEW_ARRAY(response->mean, grid->known);
     NEW_ARRAY(response->phi, grid->known);
     if (grid->groups == 0)
@@ -36,7 +39,9 @@ void mf_inversion_response_clear(struct inversion_response *response) {
     mf_memory_free(response->values);
     mf_memory_free(response->mean);
     mf_memory_free(response->phi);
+    mf_memory_free(response->sampled);
     mf_memory_free(response->covariance);
+    mf_memory_free(response->shared);
     *response = (struct inversion_response){0};
 }
 
@@ -82,7 +87,7 @@ static double find_change_along_step(const struct inversion_state *state) {
         for (size_t b = 0; b < grid->known; b++) {
             const double change = (state->phi[grid->known_point[a]] - response->phi[a]) *
                                   (state->phi[grid->known_point[b]] - response->phi[b]);
-            before += change * response->covariance[a * grid->known + b];
+            before += change * response->sampled[a * grid->known + b];
             now += change * mf_comoments_covariance(counts, grid->known_bin[a], grid->known_bin[b]);
         }
     if (!(before > 0 && now > 0))
@@ -92,17 +97,17 @@ static double find_change_along_step(const struct inversion_state *state) {
 }
 
 /// The independent samples at the present potential that the C of before is worth. Of n of them C
-/// of N bins has the relative variance N/n as a matrix. Where g has changed by δ it is off by 2 δ,
-/// as a product of two counts is; and where a fit goes by what g hardly sees, C changes along its
-/// way though g does not: of a Yukawa fluid the variance along it fell to a third while g moved by
-/// 0.002. With that C of before the fit ended at a pressure of 11.3(2.2) instead of 19.0, without
-/// it at 15.4(5.3).
+/// of N functions has the relative variance N/n as a matrix. Where g has changed by δ it is off by
+/// 2 δ, as a product of two counts is; and where a fit goes by what g hardly sees, C changes along
+/// its way though g does not: of a Yukawa fluid the variance along it fell to a third while g moved
+/// by 0.002. With that C of before the fit ended at a pressure of 11.3(2.2) instead of 19.0,
+/// without it at 15.4(5.3).
 ///
 /// Samples as such would not do: how many make one independent is another number in each iteration,
 /// as is what lies between them.
 static double find_worth(const struct inversion_state *state) {
     const struct inversion_response *response = &state->response;
-    const double known = (double)state->grid.known;
+    const double known = (double)state->grid.known, functions = (double)response->functions;
     double squares = 0;
     for (size_t a = 0; a < state->grid.known; a++) {
         const size_t bin = state->grid.known_bin[a];
@@ -110,10 +115,10 @@ static double find_worth(const struct inversion_state *state) {
             (state->replicas.counts.mean[bin] - response->mean[a]) / state->target.ideal[bin], 2);
     }
     const double change = 4 * squares / known + find_change_along_step(state);
-    return response->independent > 0 ? 1 / (1 / response->independent + change / known) : 0;
+    return response->independent > 0 ? 1 / (1 / response->independent + change / functions) : 0;
 }
 
-void mf_inversion_response_add(struct inversion_state *state) {
+enum status mf_inversion_response_add(struct inversion_state *state) {
     const struct potential_grid *grid = &state->grid;
     const struct comoments *counts = &state->replicas.counts;
     struct inversion_response *response = &state->response;
@@ -123,7 +128,7 @@ void mf_inversion_response_add(struct inversion_state *state) {
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
         for (size_t b = 0; b < grid->known; b++) {
-            double *c = &response->covariance[a * grid->known + b];
+            double *c = &response->sampled[a * grid->known + b];
             *c =
                 (1 - share) * *c + share * mf_comoments_covariance(counts, bin, grid->known_bin[b]);
         }
@@ -131,12 +136,17 @@ void mf_inversion_response_add(struct inversion_state *state) {
         response->phi[a] =
             (1 - share) * response->phi[a] + share * state->phi[grid->known_point[a]];
     }
+    TRY(mf_inversion_covariance_find(
+        &(struct inversion_covariance_blocks){grid->known_of, grid->blocks, grid->known},
+        response->sampled, response->mean, response->independent, response->covariance,
+        response->shared, &response->functions));
     mf_inversion_response_find(state);
     mf_inversion_kirkwood_buff_respond(state, share);
+    return STATUS_OK;
 }
 
 enum status mf_inversion_response_assess(struct inversion_state *state) {
     mf_inversion_pressure_measure(state);
-    mf_inversion_response_add(state);
+    TRY(mf_inversion_response_add(state));
     return mf_inversion_pressure_slopes(state);
 }

@@ -14,15 +14,18 @@
 
 struct inversion_state;
 
-/// −k_B T ∂⟨S_a⟩/∂Φ_b = Σ_c C_ac M_cb: C is that of the samples, and M_cb the mean over bin c of
-/// what a unit at point b makes of the curve. Without groups this is C.
+/// −k_B T ∂⟨S_a⟩/∂Φ_b = Σ_c C_ac M_cb: C is what the samples tell of it, and M_cb the mean over bin
+/// c of what a unit at point b makes of the curve. Without groups this is C.
 struct inversion_response {
-    double *covariance; ///< C of S in the known bins, shape [known, known]
+    double *sampled;    ///< C of S in the known bins as sampled, shape [known, known]
+    double *covariance; ///< C but for its noise (inversion/inversion_covariance.h), the same shape
+    double *shared;     ///< variance of S in its functions, shape [known]
     double *means;      ///< M of each group, one after the other; NULL without groups
     double *values;     ///< the response, shape [known, known]; NULL without groups
     double *mean;       ///< of S in the samples that C is made of, shape [known]
     double *phi;        ///< the mean of their potentials in the known bins, shape [known]
     double independent; ///< samples that C is worth at the present potential; 0: nothing is kept
+    size_t functions;   ///< in which C is as sampled
 };
 
 /// Fails: NO_MEMORY.
@@ -30,12 +33,9 @@ enum status mf_inversion_response_init(struct inversion_state *state) MUST_USE;
 void mf_inversion_response_clear(struct inversion_response *response);
 
 /// Add the present samples to C, which keeps those before as far as it is the same: by g, and by
-/// the variance of S along the way that the potential has gone since. The noise of C leads from
-/// every direction into those that g sees best, so that little seen ones seem better known than
-/// they are and each step goes a part of their way: a third for soft beads with 1400 samples and as
-/// many again in the target, where the pressure was still off by three of its errors when g had
-/// agreed. Tested: test_inversion_response.
-void mf_inversion_response_add(struct inversion_state *state);
+/// the variance of S along the way that the potential has gone since. Fails: NO_MEMORY. Tested:
+/// test_inversion_response.
+enum status mf_inversion_response_add(struct inversion_state *state) MUST_USE;
 
 /// Fill the response from the present C. Tested: test_inversion_response.
 void mf_inversion_response_find(struct inversion_state *state);

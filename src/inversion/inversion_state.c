@@ -207,7 +207,8 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
     span[n++] = (struct memory_span){&response->independent, sizeof response->independent};
     span[n++] = (struct memory_span){response->mean, bytes};
     span[n++] = (struct memory_span){response->phi, bytes};
-    span[n++] = (struct memory_span){response->covariance, known * bytes};
+    span[n++] = (struct memory_span){&response->functions, sizeof response->functions};
+    span[n++] = (struct memory_span){response->sampled, known * bytes};
     span[n++] = (struct memory_span){&state->inside.min, sizeof state->inside.min};
     span[n++] = (struct memory_span){state->inside.g,
                                      state->grid.pairs * state->grid.bins * sizeof(double)};

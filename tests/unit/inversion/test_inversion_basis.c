@@ -51,7 +51,7 @@ static void make(struct made *made, size_t coefficients, double samples) {
                 made->covariance[a * KNOWN + b] += factor[a * KNOWN + k] * factor[b * KNOWN + k];
     }
     state->problem = &made->problem;
-    state->response.covariance = made->covariance;
+    state->response.sampled = made->covariance;
     state->excess = made->excess;
     state->target.error = made->error;
     state->inefficiency = 1;

@@ -46,6 +46,7 @@ static void make(struct made *made) {
         }
         state->problem = &made->problem[s];
         state->response.covariance = made->covariance[s];
+        state->response.functions = KNOWN;
         state->target.error = made->exact;
         state->inefficiency = 1;
         state->excess = made->excess[s];

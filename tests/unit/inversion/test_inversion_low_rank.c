@@ -40,7 +40,7 @@ static void make(struct made *made, size_t coefficients, double samples, double 
                 softness * sqrt(made->counts[a + CORE] * made->counts[b + CORE]) *
                 ((a == b) + collective * cos((double)a) * cos((double)b));
     state->problem = &made->problem;
-    state->response.covariance = made->covariance;
+    state->response.sampled = made->covariance;
     state->target.counts = made->counts;
     state->target.error = made->error;
     state->inefficiency = 1;

@@ -27,7 +27,7 @@ static void make(struct made *made) {
                  .known_of = made->known_of,
                  .blocks = 2,
                  .seen = made->seen},
-        .response = {.covariance = made->covariance, .independent = SAMPLES},
+        .response = {.covariance = made->covariance, .independent = SAMPLES, .functions = KNOWN},
         .replicas.counts = {.size = KNOWN, .mean = made->counts},
         .inefficiency = 1,
         .variance = made->variance,
@@ -43,9 +43,10 @@ static void make(struct made *made) {
 }
 
 /// (L Lᵀ)_ab
-static double covariance_of(const struct made *made, size_t a, size_t b) {
+static double covariance_of(const struct made *made, enum inversion_noise_kind kind, size_t a,
+                            size_t b) {
     double factor[KNOWN * KNOWN], sum = 0;
-    mf_inversion_noise_find(&made->state, NULL, factor);
+    mf_inversion_noise_find(&made->state, kind, NULL, factor);
     for (size_t k = 0; k <= a && k <= b; k++)
         sum += factor[a * KNOWN + k] * factor[b * KNOWN + k];
     return sum;
@@ -56,11 +57,11 @@ static void test_inversion_noise_of_samples_correlates_as_what_they_count(void *
     (void)state;
     static struct made made;
     make(&made);
-    assert_close(covariance_of(&made, 3, 3), 4, 1e-12);
-    assert_close(covariance_of(&made, 3, 2), 0.94 * 4 * 0.5, 1e-12);
-    assert_close(covariance_of(&made, 0, 3), 0.94 * 4 * 0.125, 1e-12);
-    assert_close(covariance_of(&made, UNSEEN, UNSEEN), 4, 1e-12);
-    assert_close(covariance_of(&made, UNSEEN, 4), 0, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 3, 3), 4, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 3, 2), 0.94 * 4 * 0.5, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 0, 3), 0.94 * 4 * 0.125, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, UNSEEN, UNSEEN), 4, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, UNSEEN, 4), 0, 1e-12);
 }
 
 static void test_inversion_noise_of_a_target_is_each_bins_own_but_for_factors(void **state) {
@@ -72,18 +73,33 @@ static void test_inversion_noise_of_a_target_is_each_bins_own_but_for_factors(vo
         made.common[a] = 0.1 * (double)(a + 1);
     }
     // 1 of 4 is of the samples.
-    assert_close(covariance_of(&made, 3, 2), 0.94 * 0.5, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 3, 2), 0.94 * 0.5, 1e-12);
     made.state.target.common = made.common;
-    assert_close(covariance_of(&made, 3, 3), 4 + 0.4 * 0.4, 1e-12);
-    assert_close(covariance_of(&made, 3, 2), 0.94 * 0.5 + 0.4 * 0.3, 1e-12);
-    assert_close(covariance_of(&made, 2, 1), 0.94 * 0.5, 1e-12); // of two pair types
-    assert_close(covariance_of(&made, UNSEEN, UNSEEN), 4, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 3, 3), 4 + 0.4 * 0.4, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 3, 2), 0.94 * 0.5 + 0.4 * 0.3,
+                 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 2, 1), 0.94 * 0.5,
+                 1e-12); // of two pair types
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, UNSEEN, UNSEEN), 4, 1e-12);
+}
+
+/// The errors of a target correlate as those of samples: all variances count.
+static void test_inversion_noise_of_a_target_of_samples_correlates_as_theirs(void **state) {
+    (void)state;
+    static struct made made;
+    make(&made);
+    for (size_t a = 0; a < KNOWN; a++)
+        made.error[a] = sqrt(3);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, 3, 3), 4, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, 3, 2), 0.94 * 4 * 0.5, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, UNSEEN, 4), 0, 1e-12);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_noise_of_samples_correlates_as_what_they_count),
         cmocka_unit_test(test_inversion_noise_of_a_target_is_each_bins_own_but_for_factors),
+        cmocka_unit_test(test_inversion_noise_of_a_target_of_samples_correlates_as_theirs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

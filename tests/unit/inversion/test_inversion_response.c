@@ -126,20 +126,23 @@ static void add_samples(struct inversion_state *state, double mean, double varia
            comoment[NUMBERS * NUMBERS] = {10 * variance, 0, 0, 10 * variance};
     state->replicas.counts =
         (struct comoments){.size = NUMBERS, .count = 10, .mean = means, .comoment = comoment};
-    mf_inversion_response_add(state);
+    assert_ok(mf_inversion_response_add(state));
 }
 
 static void make_two_bins(struct inversion_state *state) {
-    static size_t bins_known[] = {0, 1};
+    static size_t bins_known[] = {0, 1}, known_of = 2;
     static double ideal[] = {5, 5};
     static const double phi[] = {0, 0};
     static const struct inverse_problem problem = {0};
-    *state = (struct inversion_state){
-        .problem = &problem,
-        .phi = phi,
-        .grid = {.known = 2, .known_bin = bins_known, .known_point = bins_known},
-        .target.ideal = ideal,
-        .inefficiency = 1};
+    *state = (struct inversion_state){.problem = &problem,
+                                      .phi = phi,
+                                      .grid = {.known = 2,
+                                               .known_bin = bins_known,
+                                               .known_point = bins_known,
+                                               .known_of = &known_of,
+                                               .blocks = 1},
+                                      .target.ideal = ideal,
+                                      .inefficiency = 1};
     assert_ok(mf_inversion_response_init(state));
 }
 
@@ -197,7 +200,7 @@ static void test_inversion_response_forgets_what_has_changed_along_the_way(void 
 static void test_inversion_response_bears_what_the_noise_of_more_bins_hides(void **unused) {
     (void)unused;
     enum { MANY = 4 };
-    static size_t known[] = {0, 1, 2, 3};
+    static size_t known[] = {0, 1, 2, 3}, known_of = MANY;
     static double ideal[] = {5, 5, 5, 5}, mean[] = {5, 5, 5, 5};
     static const double phi[MANY] = {0}, gone[] = {0.1, -0.2, 0.3, 0.1};
     static const struct inverse_problem problem = {0};
@@ -205,19 +208,23 @@ static void test_inversion_response_bears_what_the_noise_of_more_bins_hides(void
     struct inversion_state state = {
         .problem = &problem,
         .phi = phi,
-        .grid = {.known = MANY, .known_bin = known, .known_point = known},
+        .grid = {.known = MANY,
+                 .known_bin = known,
+                 .known_point = known,
+                 .known_of = &known_of,
+                 .blocks = 1},
         .target.ideal = ideal,
         .inefficiency = 1e-6,
         .replicas.counts = {.size = MANY, .count = 10, .mean = mean, .comoment = comoment}};
     assert_ok(mf_inversion_response_init(&state));
     for (size_t a = 0; a < MANY; a++)
         comoment[a * (MANY + 1)] = 3;
-    mf_inversion_response_add(&state);
+    assert_ok(mf_inversion_response_add(&state));
     for (size_t a = 0; a < MANY; a++)
         comoment[a * (MANY + 1)] = 2;
     state.phi = gone;
     const double now = 10 / state.inefficiency;
-    mf_inversion_response_add(&state);
+    assert_ok(mf_inversion_response_add(&state));
     assert_close(state.response.independent - now, MANY / (0.5 * 0.5), 0.01);
     mf_inversion_response_clear(&state.response);
 }

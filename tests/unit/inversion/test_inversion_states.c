@@ -79,7 +79,7 @@ static void sample_state(struct made *made, size_t s, double factor) {
                                               .counts = made->target[s],
                                               .error = made->none};
     state->variance = made->variance[s];
-    state->response.covariance = made->covariance[s];
+    state->response.sampled = made->covariance[s];
     state->replicas.counts = (struct comoments){.count = sampled, .mean = made->counts[s]};
     state->inefficiency = 1;
     state->assessment.sections = 1;
