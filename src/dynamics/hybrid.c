@@ -113,7 +113,7 @@ static enum status scatter_molecules(struct simulation *simulation,
     struct particles *particles = &simulation->particles;
     for (size_t k = 0; k < particles->count; k++)
         particles->id[k] = (uint32_t)k;
-    TRY(mf_molecules_place(molecules, particles, &simulation->setup.placement,
+    TRY(mf_molecules_place(molecules, &simulation->law, particles, &simulation->setup.placement,
                            simulation->setup.seed));
     TRY(mf_neighbours_sort_and_build(&simulation->neighbours, particles));
     return mf_relax_molecules(simulation);
