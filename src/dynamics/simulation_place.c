@@ -35,6 +35,7 @@ static enum status place_particles(struct simulation *simulation,
         TRY(mf_placement_fill(particles, &setup->placement, setup->seed));
         if (composition_is_mixed(&setup->composition))
             mf_placement_mix(particles, setup->seed);
+        mf_placement_tilt(particles, setup->placement.bias.tilt, setup->seed);
         break;
     case PLACEMENT_RANDOM:
         TRY(mf_placement_fill(particles, &setup->placement, setup->seed));

@@ -32,6 +32,7 @@ static enum status place_starts(struct starts *starts, const struct placement *p
     TRY(mf_placement_fill(particles, placement, seed));
     if (placement->kind != PLACEMENT_RANDOM)
         mf_placement_mix(particles, seed);
+    mf_placement_tilt(particles, placement->bias.tilt, seed);
     for (size_t k = 0; k < particles->count; k++)
         starts->site[particles->id[k]] = (uint32_t)k;
     return STATUS_OK;
@@ -52,6 +53,7 @@ enum status mf_molecules_place(const struct molecules *molecules, const struct p
         CLEARED_BY(mf_molecules_growth_clear) struct growth growth = {0};
         CHECK(mf_molecules_growth_init(&growth, molecules, &topology->kind[k], law,
                                        particles->box.dimensions));
+        growth.stretch = placement->bias.stretch;
         CHECK(grow_kind(&growth, &starts, particles, seed));
     }
     for (size_t id = 0; id < topology->particles; id++)

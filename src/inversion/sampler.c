@@ -68,7 +68,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     if (sampler->kind == SAMPLER_DYNAMICS) {
         CHECK(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
                              system->molecules, system->many_body, &sampler->histogram,
-                             system->temperature, system->seed));
+                             system->temperature, system->seed, &system->bias));
         sampler->hybrid.simulation.setup.cancel = system->cancel;
         return STATUS_OK;
     }
@@ -76,9 +76,14 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
                              system->temperature, system->seed));
     sampler->chain.cancel = system->cancel;
+    sampler->chain.bias = system->bias;
     if (composition_is_mixed(system->composition) && system->molecules == NULL)
         sampler->chain.exchanges =
             1 + (uint32_t)mf_composition_particles(system->composition) / BEADS_BY_EXCHANGE;
+    if (system->molecules == NULL && system->bias.tilt != 0) {
+        mf_placement_tilt(&sampler->chain.particles, system->bias.tilt, system->seed);
+        CHECK(mf_metropolis_refresh(&sampler->chain));
+    }
     CHECK(mf_metropolis_join(&sampler->chain, system->molecules));
 done:
     if (status != STATUS_OK)

@@ -60,7 +60,8 @@ struct sampler_system {
     size_t integrals; ///< of Kirkwood and Buff: pairs of components, if they are asked for, or 0
     double q_maximum; ///< of their waves, as of mf_kirkwood_buff_waves_init [1/λ]
     uint64_t seed;
-    const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL
+    struct placement_bias bias; ///< of where it begins
+    const atomic_bool *cancel;  ///< stops the sweeps once it is set, or NULL
 };
 
 /// Bins that are counted: of all pair types, and of the groups.

@@ -300,7 +300,7 @@ static void test_samplers_begin_without_links(void **state) {
     struct hybrid hybrid;
     assert_ok(mf_hybrid_init(&hybrid, &setup->box, &melt.composition, setup->potential,
                              &melt.molecules, NULL, &(struct pair_histogram){0}, setup->temperature,
-                             5));
+                             5, NULL));
     check_particles(&melt, &hybrid.simulation.particles);
     assert_ok(mf_hybrid_scatter(&hybrid));
     check_particles(&melt, &hybrid.simulation.particles);

@@ -184,11 +184,35 @@ static void test_rings_come_back_to_where_they_began(void **state) {
     mf_molecules_clear(&molecules);
 }
 
+/// Stretched, coiled and free chains of eight: <R_e²> of free ones is (N − 1) <r²>.
+static void test_chains_begin_stretched_or_coiled_when_asked(void **state) {
+    (void)state;
+    struct molecules molecules;
+    struct growth growth;
+    double size[3] = {0};
+    make_chains(&molecules, BEADS, BONDED_BOND);
+    assert_ok(mf_molecules_growth_init(&growth, &molecules, molecules.topology.kind, &alone, 3));
+    for (int n = 0; n < 3; n++)
+        for (uint32_t m = 0; m < 1000; m++) {
+            double place[BEADS][3], way[3];
+            growth.stretch = 0.7 * (n - 1);
+            mf_molecules_growth_draw(&growth, 7, m, place);
+            between(place[0], place[BEADS - 1], way);
+            size[n] += dot(way, way) / 1000;
+        }
+    print_message("R_e^2 %.2f, %.2f, %.2f\n", size[0], size[1], size[2]);
+    assert_true(fabs(size[1] / (7 * 0.452) - 1) < 0.1); // <r²> of r² exp(-k (r - l)²/2 k_B T)
+    assert_true(size[0] < 0.8 * size[1] && size[2] > 1.25 * size[1]);
+    mf_molecules_growth_clear(&growth);
+    mf_molecules_clear(&molecules);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_chains_are_drawn_from_their_laws),
         cmocka_unit_test(test_branches_are_chosen_by_all_of_their_angles),
         cmocka_unit_test(test_rings_come_back_to_where_they_began),
+        cmocka_unit_test(test_chains_begin_stretched_or_coiled_when_asked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
