@@ -22,7 +22,7 @@ static bool is_mixture(const struct sampler_system *system) {
 /// Beginnings on both sides of equilibrium: half of the replicas with molecules that are stretched,
 /// half with coiled ones, and of mixtures each half with a wave of composition and without.
 static struct placement_bias begin_apart(const struct sampler_system *system, size_t k) {
-    static const double stretch = 0.7, tilt = 3;
+    static const double stretch = 0.35, tilt = 1.5;
     return (struct placement_bias){.stretch = k % 2 ? stretch : -stretch,
                                    .tilt = is_mixture(system) && k / 2 % 2 ? tilt : 0};
 }
