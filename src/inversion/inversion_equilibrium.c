@@ -24,7 +24,8 @@ static double time_of(int block) {
 static const char *const sums[SAMPLER_SUMS] = {[SAMPLER_VIRIAL] = "the pressure",
                                                [SAMPLER_ENERGY] = "the energy",
                                                [SAMPLER_GYRATION] = "R_g^2 of the molecules",
-                                               [SAMPLER_ENDS] = "R_e^2 of the molecules"};
+                                               [SAMPLER_ENDS] = "R_e^2 of the molecules",
+                                               [SAMPLER_WAVES] = "the longest waves of the types"};
 
 /// Numbers of a sample that are tested together.
 struct quantity {
