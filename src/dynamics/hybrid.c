@@ -19,7 +19,8 @@ static const double wanted_acceptance = 0.9, gain = 0.05;
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct composition *composition, const struct table *potential,
                            const struct molecules *molecules, const struct many_body *many_body,
-                           const struct pair_histogram *bins, double temperature, uint64_t seed) {
+                           const struct pair_histogram *bins, double temperature, uint64_t seed,
+                           const struct placement_bias *bias) {
     enum status status = STATUS_OK;
     const size_t count = (size_t)mf_composition_particles(composition);
     const struct hybrid_step step =
@@ -30,7 +31,8 @@ enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
         .composition = *composition,
         .placement = {.count = (int64_t)count,
                       .kind = PLACEMENT_LATTICE,
-                      .jitter = PLACEMENT_JITTER},
+                      .jitter = PLACEMENT_JITTER,
+                      .bias = bias ? *bias : (struct placement_bias){0}},
         .temperature = temperature,
         .time_step = step.first,
         .temperature_limit = 1e6,
@@ -113,7 +115,7 @@ static enum status scatter_molecules(struct simulation *simulation,
     struct particles *particles = &simulation->particles;
     for (size_t k = 0; k < particles->count; k++)
         particles->id[k] = (uint32_t)k;
-    TRY(mf_molecules_place(molecules, particles, &simulation->setup.placement,
+    TRY(mf_molecules_place(molecules, &simulation->law, particles, &simulation->setup.placement,
                            simulation->setup.seed));
     TRY(mf_neighbours_sort_and_build(&simulation->neighbours, particles));
     return mf_relax_molecules(simulation);
@@ -125,6 +127,8 @@ enum status mf_hybrid_scatter(struct hybrid *hybrid) {
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     TRY(molecules ? scatter_molecules(simulation, molecules)
                   : mf_placement_disordered(&simulation->particles, setup->seed));
+    if (!molecules)
+        mf_placement_tilt(&simulation->particles, setup->placement.bias.tilt, setup->seed);
     return mf_hybrid_refresh(hybrid);
 }
 

@@ -37,12 +37,13 @@ struct hybrid {
 /// @param[in] many_body  energies of local densities, borrowed; NULL: none
 /// @param[in] bins       of the pairs to be counted, within the cutoff; `counts` is not read. None:
 ///                       no pairs are
+/// @param[in] bias       of where they begin, now and when they are scattered; NULL: none
 /// Fails: as mf_simulation_init.
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct composition *composition, const struct table *potential,
                            const struct molecules *molecules, const struct many_body *many_body,
-                           const struct pair_histogram *bins, double temperature,
-                           uint64_t seed) MUST_USE;
+                           const struct pair_histogram *bins, double temperature, uint64_t seed,
+                           const struct placement_bias *bias) MUST_USE;
 void mf_hybrid_clear(struct hybrid *hybrid);
 
 /// Place the particles again, without order; molecules as a scene does. Fails: NO_MEMORY,

@@ -124,7 +124,7 @@ static enum status place_molecules(struct metropolis *metropolis) {
     struct hybrid hybrid;
     TRY(mf_hybrid_init(&hybrid, &metropolis->particles.box, &law->composition, law->potential,
                        metropolis->molecules.molecules, NULL, &(struct pair_histogram){0},
-                       law->temperature, metropolis->seed));
+                       law->temperature, metropolis->seed, &metropolis->bias));
     const enum status status = take_places(metropolis, &hybrid.simulation.particles);
     mf_hybrid_clear(&hybrid);
     return status;
@@ -143,6 +143,7 @@ enum status mf_metropolis_scatter(struct metropolis *metropolis) {
     if (metropolis->molecules.molecules)
         return place_molecules(metropolis);
     TRY(mf_placement_disordered(&metropolis->particles, metropolis->seed));
+    mf_placement_tilt(&metropolis->particles, metropolis->bias.tilt, metropolis->seed);
     return mf_metropolis_refresh(metropolis);
 }
 

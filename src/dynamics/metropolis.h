@@ -20,8 +20,9 @@ struct metropolis {
     struct neighbours neighbours; ///< full list
     struct pair_law law;          ///< its potential is borrowed and may be exchanged
     struct molecule_moves molecules;
-    uint32_t *order; ///< ids, in the order in which a sweep moves them
-    double step;     ///< half edge of the cube of moves [λ]
+    struct placement_bias bias; ///< of what is placed from now on; none at first
+    uint32_t *order;            ///< ids, in the order in which a sweep moves them
+    double step;                ///< half edge of the cube of moves [λ]
     uint64_t seed;
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL; borrowed
     uint32_t sweep;            ///< sweeps so far: the counter of the random numbers

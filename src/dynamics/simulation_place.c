@@ -28,12 +28,14 @@ static enum status place_particles(struct simulation *simulation,
     struct particles *particles = &simulation->particles;
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
     if (molecules && setup->placement.kind != PLACEMENT_FILE)
-        return mf_molecules_place(molecules, particles, &setup->placement, setup->seed);
+        return mf_molecules_place(molecules, &simulation->law, particles, &setup->placement,
+                                  setup->seed);
     switch ((enum placement_kind)setup->placement.kind) {
     case PLACEMENT_LATTICE:
         TRY(mf_placement_fill(particles, &setup->placement, setup->seed));
         if (composition_is_mixed(&setup->composition))
             mf_placement_mix(particles, setup->seed);
+        mf_placement_tilt(particles, setup->placement.bias.tilt, setup->seed);
         break;
     case PLACEMENT_RANDOM:
         TRY(mf_placement_fill(particles, &setup->placement, setup->seed));

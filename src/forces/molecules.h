@@ -46,11 +46,10 @@ enum status mf_molecules_check(const struct molecules *molecules, const struct b
 const struct molecules *mf_molecules_find(const struct interaction_choice *interactions, int count);
 
 /// Place all beads: the first one of each molecule, and single beads, as `placement` says of
-/// particles, on a lattice or at random; the others one after the other along the bonds, at the
-/// lengths and angles at which these rest, and at least 1.05 lengths from the bead before the last
-/// (R. Auhl, R. Everaers, G. S. Grest, K. Kremer and S. J. Plimpton, J. Chem. Phys. 119, 12718
-/// (2003), section II). Beads of different molecules may overlap, and rings be linked:
-/// mf_relax_molecules parts them. Fails: NO_MEMORY, BAD_INPUT as mf_placement_random. Tested:
-/// test_molecules.
-enum status mf_molecules_place(const struct molecules *molecules, struct particles *particles,
-                               const struct placement *placement, uint64_t seed) MUST_USE;
+/// particles, on a lattice or at random; the others where forces/molecules_growth.h draws them.
+/// Beads of different molecules may overlap, and rings be linked: mf_relax_molecules parts them.
+/// @param[in] law  of pairs, and the temperature
+/// Fails: NO_MEMORY, BAD_INPUT as mf_placement_random. Tested: test_molecules_growth.
+enum status mf_molecules_place(const struct molecules *molecules, const struct pair_law *law,
+                               struct particles *particles, const struct placement *placement,
+                               uint64_t seed) MUST_USE;

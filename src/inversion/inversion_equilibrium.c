@@ -24,7 +24,8 @@ static double time_of(int block) {
 static const char *const sums[SAMPLER_SUMS] = {[SAMPLER_VIRIAL] = "the pressure",
                                                [SAMPLER_ENERGY] = "the energy",
                                                [SAMPLER_GYRATION] = "R_g^2 of the molecules",
-                                               [SAMPLER_ENDS] = "R_e^2 of the molecules"};
+                                               [SAMPLER_ENDS] = "R_e^2 of the molecules",
+                                               [SAMPLER_WAVES] = "the longest waves of the types"};
 
 /// Numbers of a sample that are tested together.
 struct quantity {
@@ -47,19 +48,30 @@ static size_t list(const struct inversion_state *state, struct quantity quantity
     return n;
 }
 
+/// Bins with fewer counts in each block are tested with all others alone: they are not normal.
+static const double frequent = 5;
+
+static bool is_frequent(const struct replicas *replicas, size_t number) {
+    const double blocks = (double)(replicas->count * REPLICAS_BLOCKS);
+    return replicas->counts.mean[number] * replicas->counts.count >= frequent * blocks;
+}
+
 static enum status test(const struct inversion_state *state, const struct quantity *quantity,
                         struct stationary *result) {
     enum status status = STATUS_OK;
     const struct replicas *replicas = &state->replicas;
     const double *chain[REPLICAS_MAX];
     double *weight = NULL;
+    bool *alone = NULL;
     NEW_ARRAY(weight, quantity->count);
+    NEW_ARRAY(alone, quantity->count);
     for (size_t k = 0; k < replicas->count; k++)
         chain[k] = replicas->member[k].block;
     for (size_t n = 0; n < quantity->count; n++) {
         const size_t number = quantity->number ? quantity->number[n] : quantity->first;
         const double variance = mf_comoments_covariance(&replicas->counts, number, number);
         weight[n] = variance > 0 ? 1 / variance : 0;
+        alone[n] = is_frequent(replicas, number);
     }
     CHECK(mf_stationary_test(&(struct stationary_numbers){.chains = replicas->count,
                                                           .chain = chain,
@@ -68,10 +80,12 @@ static enum status test(const struct inversion_state *state, const struct quanti
                                                           .number = quantity->number
                                                                         ? quantity->number
                                                                         : &quantity->first,
-                                                          .weight = weight},
+                                                          .weight = weight,
+                                                          .alone = alone},
                              result));
 done:
     mf_memory_free(weight);
+    mf_memory_free(alone);
     return status;
 }
 

@@ -10,6 +10,23 @@
 #include <math.h>
 #include <string.h>
 
+/// Whether there is more than one component.
+static bool is_mixture(const struct sampler_system *system) {
+    if (system->molecules == NULL)
+        return composition_is_mixed(system->composition);
+    const struct topology *topology = &system->molecules->topology;
+    return topology->kinds > 1 ||
+           (size_t)topology->kind[0].count * (size_t)topology->kind[0].beads < topology->particles;
+}
+
+/// Beginnings on both sides of equilibrium: half of the replicas with molecules that are stretched,
+/// half with coiled ones, and of mixtures each half with a wave of composition and without.
+static struct placement_bias begin_apart(const struct sampler_system *system, size_t k) {
+    static const double stretch = 0.35, tilt = 1.5;
+    return (struct placement_bias){.stretch = k % 2 ? stretch : -stretch,
+                                   .tilt = is_mixture(system) && k / 2 % 2 ? tilt : 0};
+}
+
 enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
                              const struct sampler_system *system) {
     enum status status = STATUS_OK;
@@ -23,6 +40,7 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
         NEW_ARRAY(replica->block, REPLICAS_BLOCKS * numbers);
         CHECK(mf_comoments_init(&replica->counts, numbers));
         own.seed = mf_rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
+        own.bias = begin_apart(system, k);
         CHECK(mf_sampler_init(&replica->sampler, kind, &own));
     }
 done:

@@ -52,6 +52,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     *sampler =
         (struct sampler){.kind = kind,
                          .molecules = system->molecules,
+                         .composition = *system->composition,
                          .group = system->group,
                          .groups = system->groups,
                          .integrals = system->integrals,
@@ -68,7 +69,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     if (sampler->kind == SAMPLER_DYNAMICS) {
         CHECK(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
                              system->molecules, system->many_body, &sampler->histogram,
-                             system->temperature, system->seed));
+                             system->temperature, system->seed, &system->bias));
         sampler->hybrid.simulation.setup.cancel = system->cancel;
         return STATUS_OK;
     }
@@ -76,9 +77,14 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
                              system->temperature, system->seed));
     sampler->chain.cancel = system->cancel;
+    sampler->chain.bias = system->bias;
     if (composition_is_mixed(system->composition) && system->molecules == NULL)
         sampler->chain.exchanges =
             1 + (uint32_t)mf_composition_particles(system->composition) / BEADS_BY_EXCHANGE;
+    if (system->molecules == NULL && system->bias.tilt != 0) {
+        mf_placement_tilt(&sampler->chain.particles, system->bias.tilt, system->seed);
+        CHECK(mf_metropolis_refresh(&sampler->chain));
+    }
     CHECK(mf_metropolis_join(&sampler->chain, system->molecules));
 done:
     if (status != STATUS_OK)
@@ -184,6 +190,24 @@ static void sum_sizes(struct sampler *sampler, double *sums) {
         }
 }
 
+/// The longest wave of the density of each type along the longest edge, where replicas begin apart:
+/// nothing of a mixture is slower.
+static double sum_waves(const struct particles *particles, const struct composition *composition) {
+    const int axis = mf_placement_slab_axis(&particles->box);
+    const double wave = 2 * M_PI / particles->box.length[axis];
+    double rho[COMPOSITION_MAX_TYPES][2] = {{0}}, sum = 0;
+    for (size_t k = 0; k < particles->count; k++) {
+        const double angle = wave * particles->position[axis][k];
+        double *own = rho[mf_composition_type(composition, particles->id[k])];
+        own[0] += cos(angle);
+        own[1] += sin(angle);
+    }
+    for (int type = 0; type < composition->types; type++)
+        if (composition->count[type] > 0)
+            sum += (pow(rho[type][0], 2) + pow(rho[type][1], 2)) / (double)composition->count[type];
+    return sum;
+}
+
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
     const size_t bins = pair_histogram_size(&sampler->histogram) - 1;
     const uint32_t *counts = sampler->histogram.counts;
@@ -205,6 +229,9 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     sum[SAMPLER_VIRIAL] = sums.virial;
     sum[SAMPLER_ENERGY] = sums.energy;
     sum_sizes(sampler, sum);
+    sum[SAMPLER_WAVES] = composition_is_mixed(&sampler->composition)
+                             ? sum_waves(particles_of(sampler), &sampler->composition)
+                             : 0;
     if (sampler->waves)
         mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, particles_of(sampler), 1,
                                     sum + SAMPLER_SUMS);

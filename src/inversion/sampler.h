@@ -33,6 +33,7 @@ struct sampler_group {
 struct sampler {
     enum sampler_kind kind;            ///< not SAMPLER_AUTO
     const struct molecules *molecules; ///< NULL: single particles
+    struct composition composition;
     const struct sampler_group *group; ///< shape [groups]
     size_t groups, integrals;
     struct metropolis chain;         ///< of SAMPLER_MONTE_CARLO
@@ -60,7 +61,8 @@ struct sampler_system {
     size_t integrals; ///< of Kirkwood and Buff: pairs of components, if they are asked for, or 0
     double q_maximum; ///< of their waves, as of mf_kirkwood_buff_waves_init [1/λ]
     uint64_t seed;
-    const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL
+    struct placement_bias bias; ///< of where it begins
+    const atomic_bool *cancel;  ///< stops the sweeps once it is set, or NULL
 };
 
 /// Bins that are counted: of all pair types, and of the groups.
@@ -94,6 +96,7 @@ enum sampler_sum {
     SAMPLER_ENERGY,   ///< Σ Φ, and U of molecules [k_B T_0]
     SAMPLER_GYRATION, ///< Σ R_g² of the molecules, each bead with the same weight [λ²]
     SAMPLER_ENDS,     ///< Σ R_e² of the molecules, from the first bead to the last [λ²]
+    SAMPLER_WAVES, ///< of a mixture Σ_a |ρ_a(q)|²/N_a of types a, q along the longest edge [1]
     SAMPLER_SUMS,
 };
 

@@ -81,6 +81,58 @@ static double divide(double above, double below, double rounding) {
     return below > rounding ? above / below : above > rounding ? INFINITY : 1;
 }
 
+/// The variances of one number.
+struct variances {
+    double drift, between, within;
+};
+
+static struct variances find_variances(const struct contrasts *all, size_t n) {
+    const double chains = (double)all->chains;
+    struct variances found = {.drift = chains * pow(all->common[SLOPE * all->count + n], 2)};
+    for (size_t k = 0; k < CONTRASTS; k++)
+        for (size_t c = 0; c < all->chains; c++) {
+            const double square = pow(all->own[(k * all->chains + c) * all->count + n], 2);
+            if (k == MEAN)
+                found.between += square / (chains - 1);
+            else
+                found.within += square / ((CONTRASTS - 1) * (chains - 1));
+        }
+    return found;
+}
+
+/// The least of two chances, and its ratio, of which the other has been taken before.
+static void take_least(double chance, double ratio, double *least, double *its_ratio) {
+    if (chance < *least)
+        *its_ratio = ratio;
+    *least = fmin(1, 2 * fmin(chance, *least));
+}
+
+/// Look at each number that may be by itself.
+static void assess_alone(const struct contrasts *all, const bool *alone,
+                         struct stationary *result) {
+    const double chains = (double)all->chains, freedom = (CONTRASTS - 1) * (chains - 1);
+    struct stationary least = {1, 1, 1, 1};
+    double count = 0;
+    for (size_t n = 0; n < all->count; n++) {
+        const struct variances of = find_variances(all, n);
+        if (!alone[n] || !(of.within > 0))
+            continue;
+        const double drift = find_p_value(of.drift / of.within, 1, freedom);
+        const double memory = find_p_value(of.between / of.within, chains - 1, freedom);
+        count++;
+        if (drift < least.drift)
+            least.drift = drift, least.drift_ratio = of.drift / of.within;
+        if (memory < least.memory)
+            least.memory = memory, least.memory_ratio = of.between / of.within;
+    }
+    if (count == 0)
+        return;
+    take_least(-expm1(count * log1p(-least.drift)), least.drift_ratio, &result->drift,
+               &result->drift_ratio);
+    take_least(-expm1(count * log1p(-least.memory)), least.memory_ratio, &result->memory,
+               &result->memory_ratio);
+}
+
 static void assess(const struct contrasts *all, struct stationary *result) {
     const double chains = (double)all->chains;
     const double freedom = (CONTRASTS - 1) * (chains - 1);
@@ -113,6 +165,8 @@ enum status mf_stationary_test(const struct stationary_numbers *numbers,
     NEW_ARRAY(all.common, CONTRASTS * all.count);
     fill(numbers, &all);
     assess(&all, result);
+    if (numbers->alone && numbers->count > 1)
+        assess_alone(&all, numbers->alone, result);
 done:
     mf_memory_free(all.own);
     mf_memory_free(all.common);

@@ -15,7 +15,10 @@
 ///
 /// Of many numbers, as the bins of a g(r) are, the sums of squares are over all of them; they have
 /// as many degrees of freedom as there are independent ones, ν = (tr Σ)²/tr Σ² of the covariances
-/// that the parts show: G. E. P. Box, Ann. Math. Stat. 25, 290 (1954).
+/// that the parts show: G. E. P. Box, Ann. Math. Stat. 25, 290 (1954). A few slow ones do not show
+/// in such a sum: each that is frequent is tested by itself, too, and the least chance of n counts
+/// as 1 − (1 − p)^n: Z. Šidák, J. Am. Stat. Assoc. 62, 626 (1967). Of both tests the smaller chance
+/// counts twice.
 #pragma once
 
 #include "base/status.h"
@@ -34,6 +37,7 @@ struct stationary_numbers {
     size_t count;         ///< numbers
     const size_t *number; ///< where they stand in a row, shape [count]
     const double *weight; ///< of their squares, shape [count]; 0: left out
+    const bool *alone;    ///< tested by themselves, too, shape [count]; NULL: none is
 };
 
 /// Chances that samples in equilibrium would be so, or worse, and the ratios of variances that they

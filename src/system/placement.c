@@ -5,6 +5,8 @@
 #include "base/rng.h"
 #include "system/cells.h"
 
+#include <math.h>
+
 static const char *const kinds[] = {"lattice", "random", "file", NULL};
 static const char *const speeds[] = {"maxwell", "normal", "uniform", "signs",
                                      NULL}; // enum particles_speeds
@@ -80,6 +82,25 @@ void mf_placement_mix(struct particles *particles, uint64_t seed) {
         const uint32_t id = particles->id[k - 1];
         particles->id[k - 1] = particles->id[other];
         particles->id[other] = id;
+    }
+}
+
+void mf_placement_tilt(struct particles *particles, double tilt, uint64_t seed) {
+    enum { TRIALS = 30 }; // of each particle
+    const int axis = mf_placement_slab_axis(&particles->box);
+    const double wave = 2 * M_PI / particles->box.length[axis];
+    const double *place = particles->position[axis], count = (double)particles->count;
+    struct rng_sequence sequence = mf_rng_sequence_begin(seed, RNG_MIXING, 0, 1);
+    for (size_t n = 0; tilt != 0 && n < TRIALS * particles->count; n++) {
+        const size_t a = mf_rng_sequence_below(&sequence, (uint32_t)particles->count);
+        const size_t b = mf_rng_sequence_below(&sequence, (uint32_t)particles->count);
+        const uint32_t id[2] = {particles->id[a], particles->id[b]};
+        const double gain =
+            tilt * ((double)id[1] - id[0]) / count * (cos(wave * place[a]) - cos(wave * place[b]));
+        if (!(mf_rng_sequence_uniform(&sequence) < exp(gain)))
+            continue;
+        particles->id[a] = id[1];
+        particles->id[b] = id[0];
     }
 }
 

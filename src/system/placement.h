@@ -9,6 +9,13 @@
 
 enum placement_kind { PLACEMENT_LATTICE, PLACEMENT_RANDOM, PLACEMENT_FILE };
 
+/// Beginnings that are not those of equilibrium, on purpose: simulations that agree in spite of
+/// them have forgotten where they began. A scene has none.
+struct placement_bias {
+    double stretch; ///< of molecules, forces/molecules_growth.h; below 0 they are coiled up
+    double tilt;    ///< of a mixture, mf_placement_tilt
+};
+
 /// How the particles of a scene are placed.
 struct placement {
     int64_t count;
@@ -18,6 +25,7 @@ struct placement {
     double separation; ///< random: least distance of any two [λ]
     double slab;       ///< lattice, random: part of the longest edge that is filled; 0: all
     int speeds;        ///< enum particles_speeds, unless the file has velocities
+    struct placement_bias bias;
     char file[FIELD_TEXT_SIZE];
 };
 
@@ -38,6 +46,11 @@ void mf_placement_lattice(struct particles *particles, double jitter, uint64_t s
 /// Exchange the ids of all particles at random, so that the types of a mixture stand on the sites
 /// of a lattice without order. Before velocities are drawn, which belong to ids.
 void mf_placement_mix(struct particles *particles, uint64_t seed);
+
+/// Exchange ids so that those of low numbers gather in one half of the box: drawn from
+/// exp(tilt Σ (id/count − 1/2) cos(2π x/L)), x along the axis of a slab. 0: nothing.
+/// Tested: test_placement.
+void mf_placement_tilt(struct particles *particles, double tilt, uint64_t seed);
 
 /// Uniform random positions no two of which are nearer than `separation` (sequential addition).
 /// Fails: BAD_INPUT when no place is found in 10,000 trials: the density is too high for it.

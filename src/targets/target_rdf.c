@@ -211,6 +211,33 @@ static size_t rows_of_a_bin(const struct target_rdf_parameters *p, const struct 
     return (size_t)ceil((double)bins->count / max_bins);
 }
 
+/// The mean of g at its end, or 1 if that is more.
+static double level_at_end(const struct target_rows *rows) {
+    const size_t from = rows->count - 1 - rows->count / 20;
+    double sum = 0;
+    for (size_t k = from; k < rows->count; k++)
+        sum += rows->y[k];
+    return fmax(1, sum / (double)(rows->count - from));
+}
+
+/// Keep the rows before they are cut. What is wrong with them is told of those that are left.
+static enum status keep_whole(struct target_rdf *target, const struct target_rows *rows) {
+    struct target_rdf_whole *whole = &target->whole;
+    const double cutoff = target->parameters.cutoff;
+    if (!rows->has_errors || !(cutoff > 0) || !(rows->x[rows->count - 1] > cutoff) ||
+        find_bins(rows, target->parameters.file, &whole->bins) != STATUS_OK) {
+        whole->bins = (struct rdf_bins){0};
+        return STATUS_OK;
+    }
+    TRY_ARRAY(whole->g, rows->count);
+    TRY_ARRAY(whole->error, rows->count);
+    const double level = level_at_end(rows);
+    for (size_t k = 0; k < rows->count; k++)
+        whole->g[k] = rows->y[k] / level;
+    memcpy(whole->error, rows->error, rows->count * sizeof *whole->error);
+    return STATUS_OK;
+}
+
 static enum status load(struct target_rdf *target, const struct units *units, int dimensions) {
     const struct target_rdf_parameters *p = &target->parameters;
     CLEARED_BY(mf_target_rows_clear) struct target_rows rows = {.dimensions = dimensions};
@@ -219,6 +246,7 @@ static enum status load(struct target_rdf *target, const struct units *units, in
                                        : read_columns(p, units, &rows));
     leave_out_half_bin(&rows);
     target->tail = mf_target_rows_tail(&rows);
+    TRY(keep_whole(target, &rows));
     cut(p, &rows);
     TRY(check_values(target, &rows));
     TRY(resample(target, &rows));
@@ -276,5 +304,7 @@ void mf_target_rdf_convert(const struct target_rdf *target, const struct finite_
 void mf_target_rdf_clear(struct target_rdf *target) {
     mf_memory_free(target->g);
     mf_memory_free(target->error);
+    mf_memory_free(target->whole.g);
+    mf_memory_free(target->whole.error);
     *target = (struct target_rdf){0};
 }

@@ -28,6 +28,12 @@ struct target_rdf {
     double estimated_error;  ///< of g = 1 in the last bin if the file has no errors, else 0
     bool assumed;            ///< and not even the scatter of the rows tells it
     struct target_tail tail; ///< of the whole file, whatever the cutoff
+    /// The rows of the whole file, if it goes on beyond the cutoff and has errors; else of none.
+    /// Where its last twentieth is above 1, as by a faulty normalisation, over the mean of that.
+    struct target_rdf_whole {
+        struct rdf_bins bins;
+        double *g, *error;
+    } whole;
     struct target_resampling resampling;
     size_t negative; ///< rows with a g slightly below 0, which is taken as 0
     double min;      ///< of these [1]

@@ -41,8 +41,21 @@ struct view {
     const double *g, *error; ///< shape [bins->count]
     const struct scene *scene;
     size_t like;    ///< beads of the type if both of a pair have the same, else 0
+    double bound;   ///< of these in the molecule of each, beside itself
+    double inside;  ///< what g leaves out of their integral [λ^3]
     double density; ///< of beads of all types [λ^-d]
 };
+
+/// What molecules add to the integrals of a pair type, and to those of an ideal gas.
+static void add_molecules(struct view *view, const int type[2], size_t pair) {
+    const struct topology *topology = &view->scene->molecules.molecules.topology;
+    const struct finite_size_fluid fluid = {&view->scene->setup.box,
+                                            &view->scene->setup.composition, topology,
+                                            view->kind != TARGET_RDF};
+    view->inside = mf_finite_size_intramolecular(&fluid, (int)pair);
+    if (view->like > 0)
+        view->bound = mf_topology_intramolecular_pairs(topology, type, false) / (double)view->like;
+}
 
 /// @param[in] kind  the number of the target
 static struct view view_of(const struct target_pairs *all, int kind, const struct scene *scene,
@@ -68,6 +81,8 @@ static struct view view_of(const struct target_pairs *all, int kind, const struc
         mf_composition_pair_name(composition, (int)pair, pair_name);
         snprintf(view.name, sizeof view.name, "%s.%s", mf_targets_name(kind), pair_name);
     }
+    if (scene_has_molecules(&scene->molecules))
+        add_molecules(&view, type, pair);
     return view;
 }
 
@@ -93,12 +108,8 @@ static void print_density(const struct view *view, char *text, size_t size) {
 static double integral_of(const struct view *view, int a, int b) {
     const int pair = mf_composition_pair(&view->scene->setup.composition, a, b);
     const struct view own = view_of(view->all, view->kind, view->scene, (size_t)pair);
-    const struct finite_size_fluid fluid = {.box = &own.scene->setup.box,
-                                            .composition = &own.scene->setup.composition,
-                                            .topology = &own.scene->molecules.molecules.topology,
-                                            .intermolecular = own.kind != TARGET_RDF};
-    return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, fluid.box, 0,
-                                      mf_finite_size_intramolecular(&fluid, pair))
+    return mf_kirkwood_buff_integrate(own.bins, own.g, own.error, &own.scene->setup.box, 0,
+                                      own.inside)
         .integral;
 }
 
@@ -206,14 +217,16 @@ static void print_compressibility(const struct view *view, char *text, size_t si
     double min = INFINITY, largest = -INFINITY;
     for (; 4 * part.count >= 3 * view->bins->count; part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
-            &part, view->g, view->error, &view->scene->setup.box, view->like, 0);
+            &part, view->g, view->error, &view->scene->setup.box, view->like, view->inside);
         if (part.count == view->bins->count)
             whole = kb;
         min = fmin(min, kb.compressibility);
         largest = fmax(largest, kb.compressibility);
     }
-    const double error = fmax(whole.compressibility_error, 0.5 * (largest - min));
-    snprintf(text, size, "1 + rho G = %.2f(%.0f)", whole.compressibility, ceil(1e2 * error));
+    const double ideal = 1 + view->bound;
+    const double error = fmax(whole.compressibility_error, 0.5 * (largest - min)) / ideal;
+    snprintf(text, size, "1 + rho G%s = %.2f(%.0f)", view->bound > 0 ? " of the molecules" : "",
+             whole.compressibility / ideal, ceil(1e2 * error));
 }
 
 static enum status check_compressibility(const struct view *view, const char *file) {
@@ -290,8 +303,7 @@ static void report_view(const struct view *view, const struct target_sanity_list
     const char *unit = unit_of(view, &length);
     char density[80], compressibility[80] = "";
     print_density(view, density, sizeof density);
-    if (view->like > 1 && view->scene->setup.box.dimensions == 3 &&
-        !scene_has_molecules(&view->scene->molecules))
+    if (view->like > 1 && view->scene->setup.box.dimensions == 3)
         print_compressibility(view, compressibility, sizeof compressibility);
     mf_target_sanity_warn(
         listener,
@@ -374,9 +386,12 @@ static void warn_of_state(const struct view *view, const struct target_sanity_li
                                        .error = view->error,
                                        .box = &view->scene->setup.box,
                                        .count = view->like,
+                                       .bound = view->bound,
+                                       .inside = view->inside,
                                        .tail = view->target->tail.mean};
     char line[TARGET_STATE_LINE];
-    if (mf_target_state_print(&state, line))
+    if (mf_target_state_print(&state, line) ||
+        mf_target_state_print_whole(&state, &view->target->whole, line))
         mf_target_sanity_warn(listener, "mesofit: warning: target.%s: %s", view->name, line);
 }
 
@@ -406,16 +421,6 @@ static void warn_of_density(const struct view *view,
             mf_units_name(units, "lambda", unit));
 }
 
-static void report_normalisation(const struct normalisation *n,
-                                 const struct target_sanity_listener *listener) {
-    if (n->found)
-        mf_target_sanity_warn(
-            listener,
-            "target.rdf: g(r) is too %s at all distances: it is divided by %.4f(%.0f); "
-            "\"normalisation\" of the target sets another factor, 1 for none",
-            n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
-}
-
 enum status mf_target_sanity_report(const struct target_files *files, const struct scene *scene,
                                     const struct target_sanity_listener *listener) {
     struct view view;
@@ -424,14 +429,14 @@ enum status mf_target_sanity_report(const struct target_files *files, const stru
             continue;
         report_view(&view, listener);
         report_origin(&view, listener);
+        warn_of_state(&view, listener);
         if (scene_has_molecules(&scene->molecules))
             continue;
         TRY(warn_of_normalisation(&view, listener));
         warn_of_density(&view, listener);
-        warn_of_state(&view, listener);
     }
     mf_target_sanity_report_groups(files, scene, listener);
-    report_normalisation(&files->normalisation, listener);
+    mf_target_sanity_report_normalisation(&files->normalisation, listener);
     char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))
         mf_target_sanity_warn(listener, "mesofit: warning: scene.%s", line);

@@ -55,6 +55,10 @@ void mf_target_sanity_report_reading(const struct target_rdf *target, const char
                                      const struct scene *scene,
                                      const struct target_sanity_listener *listener);
 
+/// By which factor g was divided, if by one.
+void mf_target_sanity_report_normalisation(const struct normalisation *n,
+                                           const struct target_sanity_listener *listener);
+
 /// Say a line.
 void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

@@ -3,6 +3,7 @@
 // What was made of a table of g(r) that is not what a program writes.
 #include "targets/target_sanity.h"
 
+#include <math.h>
 #include <stdio.h>
 
 void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
@@ -28,4 +29,14 @@ void mf_target_sanity_report_reading(const struct target_rdf *target, const char
                           "points%s are read at equal bins of %.4g %s by cubic interpolation",
                           name, r->shortest * length, r->longest * length, unit, r->points, error,
                           target->bins.width * length / (double)target->joined, unit);
+}
+
+void mf_target_sanity_report_normalisation(const struct normalisation *n,
+                                           const struct target_sanity_listener *listener) {
+    if (n->found)
+        mf_target_sanity_warn(
+            listener,
+            "target.rdf: g(r) is too %s at all distances: it is divided by %.4f(%.0f); "
+            "\"normalisation\" of the target sets another factor, 1 for none",
+            n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
 }

@@ -44,19 +44,23 @@ static struct wave highest_of(const struct target_state *state) {
 bool mf_target_state_print(const struct target_state *state, char line[TARGET_STATE_LINE]) {
     if (state->box->dimensions != 3 || state->count < 2)
         return false;
-    const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(state->bins, state->g, state->error,
-                                                               state->box, state->count, 0);
-    if (kb.compressibility - standard_errors * kb.compressibility_error > several) {
+    const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
+        state->bins, state->g, state->error, state->box, state->count, state->inside);
+    const double value = kb.compressibility / (1 + state->bound);
+    const double error = kb.compressibility_error / (1 + state->bound);
+    if (value - standard_errors * error > several) {
         char tail[64] = "";
         if (state->tail > above_1)
             snprintf(tail, sizeof tail, ", and g ends at %.3f", state->tail);
         snprintf(line, TARGET_STATE_LINE,
-                 "1 + rho G = %.3g(%.1g)%s: of two phases, or near a critical point? A fit may "
+                 "1 + rho G%s = %.3g(%.1g)%s: of two phases, or near a critical point? A fit may "
                  "condense; take g of one phase with its density, a shorter \"cutoff\", or give "
                  "\"pressure\"",
-                 kb.compressibility, kb.compressibility_error, tail);
+                 state->bound > 0 ? " of the molecules" : "", value, error, tail);
         return true;
     }
+    if (state->bound > 0)
+        return false;
     const struct wave highest = highest_of(state);
     if (!(highest.value - standard_errors * highest.error > frozen))
         return false;
@@ -65,4 +69,16 @@ bool mf_target_state_print(const struct target_state *state, char line[TARGET_ST
              "A fit begins from disorder and finds no potential for it; take g of the liquid",
              highest.value);
     return true;
+}
+
+bool mf_target_state_print_whole(const struct target_state *state,
+                                 const struct target_rdf_whole *whole,
+                                 char line[TARGET_STATE_LINE]) {
+    struct target_state other = *state;
+    if (whole->bins.count == 0)
+        return false;
+    other.bins = &whole->bins;
+    other.g = whole->g;
+    other.error = whole->error;
+    return mf_target_state_print(&other, line);
 }

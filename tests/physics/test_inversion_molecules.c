@@ -251,7 +251,7 @@ static double find(const struct inverse_method *method, const struct twin *twin,
     return squares;
 }
 
-enum { TWIN_SEED = 5 };
+enum { TWIN_SEED = 21 };
 
 /// The first twin, which all methods look into.
 static struct twin first_twin;

@@ -238,7 +238,9 @@ static void test_freely_jointed_chains_have_exact_sizes(void **state) {
 // Mechanics ---------------------------------------------------------------------------------------
 
 /// Without friction energy and momentum are kept: velocity-verlet's energy has an error of Δt², so
-/// that at half the time step it scatters a quarter as much. And it does not drift.
+/// that at half the time step it scatters a quarter as much. And it does not drift. The chains are
+/// cold: at T = 1 some come to be straight, where a dihedral has no direction and no time step is
+/// short enough.
 static void test_energy_of_molecules_is_kept_without_friction(void **state) {
     (void)state;
     double scatter[2];
@@ -247,6 +249,9 @@ static void test_energy_of_molecules_is_kept_without_friction(void **state) {
         const double time_step = n == 0 ? 0.004 : 0.002;
         struct running_mean first = {0}, last = {0};
         make_gas(&gas, 200, BEADS, BONDED_DIHEDRAL, &mf_velocity_verlet, NULL, time_step);
+        mf_simulation_clear(&gas.simulation);
+        gas.fluid.setup.temperature = 0.2;
+        assert_ok(mf_simulation_init(&gas.simulation, &gas.fluid.setup, NULL));
         gas.simulation.wants = PAIR_FORCES_AND_SUMS;
         const int blocks = 400, each = n == 0 ? 10 : 20;
         assert_ok(mf_simulation_run(&gas.simulation, 200));

@@ -71,7 +71,7 @@ static void test_hybrid_samples_bonds_and_angles_exactly(void **state) {
     const struct composition composition = make_chains(&molecules);
     make_table(&table, 0); // pairs that do nothing
     assert_ok(mf_hybrid_init(&hybrid, &box, &composition, &table, &molecules, NULL, &none,
-                             temperature, 5));
+                             temperature, 5, NULL));
     assert_ok(mf_hybrid_scatter(&hybrid));
     assert_ok(mf_hybrid_equilibrate(&hybrid, 400));
     hybrid.simulation.setup.time_step *= 1.6;

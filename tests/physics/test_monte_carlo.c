@@ -130,7 +130,7 @@ static void measure_hybrid(const struct simulation_setup *setup, const struct rd
     measurement_init(measurement);
     assert_ok(mf_hybrid_init(
         &hybrid, &setup->box, &(struct composition){.types = 1, .count = {(int64_t)count}},
-        setup->potential, NULL, NULL, &pairs, setup->temperature, setup->seed));
+        setup->potential, NULL, NULL, &pairs, setup->temperature, setup->seed, NULL));
     assert_ok(mf_hybrid_equilibrate(&hybrid, schedule->equilibration));
     hybrid.simulation.setup.time_step *= 2.5;
     for (int block = 0; block < BLOCKS; block++) {
@@ -230,7 +230,7 @@ static void test_hybrid_survives_when_the_potential_is_wild(void **state) {
     fluid_groot_warren(&fluid, 300, 0.01);
     assert_ok(mf_hybrid_init(&hybrid, &fluid.setup.box,
                              &(struct composition){.types = 1, .count = {300}}, &fluid.potential,
-                             NULL, NULL, &pairs, 1, 3));
+                             NULL, NULL, &pairs, 1, 3, NULL));
     assert_ok(mf_hybrid_equilibrate(&hybrid, 100));
     for (int k = 0; k <= TABLE_INTERVALS; k++)
         for (int n = 0; n < 4; n++)

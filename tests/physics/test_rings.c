@@ -300,7 +300,7 @@ static void test_samplers_begin_without_links(void **state) {
     struct hybrid hybrid;
     assert_ok(mf_hybrid_init(&hybrid, &setup->box, &melt.composition, setup->potential,
                              &melt.molecules, NULL, &(struct pair_histogram){0}, setup->temperature,
-                             5));
+                             5, NULL));
     check_particles(&melt, &hybrid.simulation.particles);
     assert_ok(mf_hybrid_scatter(&hybrid));
     check_particles(&melt, &hybrid.simulation.particles);
@@ -350,7 +350,7 @@ static void test_chains_begin_where_overlaps_are_parted(void **state) {
     for (int n = 0; n < 2; n++) {
         for (size_t k = 0; k < both[n]->particles.count; k++)
             both[n]->particles.id[k] = (uint32_t)k;
-        assert_ok(mf_molecules_place(&melt.molecules, &both[n]->particles,
+        assert_ok(mf_molecules_place(&melt.molecules, &both[n]->law, &both[n]->particles,
                                      &melt.fluid.setup.placement, 8));
         assert_ok(mf_neighbours_sort_and_build(&both[n]->neighbours, &both[n]->particles));
     }

@@ -20,7 +20,7 @@ static void make_table(struct table *table, double a) {
 /// The time step that a fluid begins with.
 static double first_step(const struct composition *composition, const struct table *table) {
     struct hybrid hybrid;
-    assert_ok(mf_hybrid_init(&hybrid, &box, composition, table, NULL, NULL, &bins, 1, 3));
+    assert_ok(mf_hybrid_init(&hybrid, &box, composition, table, NULL, NULL, &bins, 1, 3, NULL));
     const double step = hybrid.simulation.setup.time_step;
     mf_hybrid_clear(&hybrid);
     return step;
@@ -54,8 +54,8 @@ static void test_hybrid_of_local_densities_alone_has_a_step(void **state) {
     struct many_body law;
     struct hybrid hybrid;
     many_bodies_crowd(&law, 0.5, 1.2, 1, 2, &one);
-    assert_ok(
-        mf_hybrid_init(&hybrid, &box, &one, NULL, NULL, &law, &(struct pair_histogram){0}, 1, 3));
+    assert_ok(mf_hybrid_init(&hybrid, &box, &one, NULL, NULL, &law, &(struct pair_histogram){0}, 1,
+                             3, NULL));
     assert_true(hybrid.simulation.setup.time_step > 0.01 && hybrid.longest < 0.12);
     mf_hybrid_clear(&hybrid);
     mf_many_body_clear(&law);

@@ -71,6 +71,7 @@ static void test_what_has_not_settled_is_named(void **state) {
                 {BINS + SAMPLER_ENERGY, "the energy"},
                 {BINS + SAMPLER_GYRATION, "R_g^2 of the molecules"},
                 {BINS + SAMPLER_ENDS, "R_e^2 of the molecules"},
+                {BINS + SAMPLER_WAVES, "the longest waves of the types"},
                 {3, "g(r)"}};
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (size_t k = 0; k < sizeof kind / sizeof *kind; k++) {

@@ -130,11 +130,40 @@ static void test_replicas_take_as_many_moves_as_their_sampler_is_tuned_to(void *
     }
 }
 
+/// Beads without a potential of two types: |ρ|²/N is 1 of each on average, and 2 of both. Of every
+/// four replicas two begin with a wave, by whose amplitude, some 80 of 300 beads, it is 20 and
+/// more.
+static void test_replicas_of_a_mixture_begin_apart(void **state) {
+    (void)state;
+    enum { BEADS = 600, PAIR_BINS = 4 };
+    const struct box box = {3, {12, 12, 12}};
+    const struct composition composition = {.types = 2, .count = {BEADS / 2, BEADS / 2}};
+    const struct sampler_system system = {.box = &box,
+                                          .composition = &composition,
+                                          .temperature = 1,
+                                          .width = 0.1,
+                                          .bins = PAIR_BINS,
+                                          .seed = 3};
+    struct replicas replicas;
+    double mean[2] = {0};
+    assert_ok(mf_replicas_init(&replicas, COUNT, SAMPLER_MONTE_CARLO, &system));
+    for (size_t k = 0; k < COUNT; k++) {
+        struct replica *member = &replicas.member[k];
+        assert_ok(mf_sampler_begin(&member->sampler));
+        assert_ok(mf_sampler_sample(&member->sampler, 1, member->sample));
+        mean[k / 2 % 2] += member->sample[replicas.bins + SAMPLER_WAVES] / (0.5 * COUNT);
+    }
+    print_message("waves %.1f and %.1f\n", mean[0], mean[1]);
+    assert_true(mean[0] < 8 && mean[1] > 20);
+    mf_replicas_clear(&replicas);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_replicas_disagree_as_their_means_do),
         cmocka_unit_test(test_replicas_scatter_their_particles_when_the_plan_says_so),
         cmocka_unit_test(test_replicas_take_as_many_moves_as_their_sampler_is_tuned_to),
+        cmocka_unit_test(test_replicas_of_a_mixture_begin_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,6 +46,22 @@ static void test_target_read_takes_the_bins_from_their_centres(void **state) {
     mf_target_rdf_clear(&target);
 }
 
+/// What lies beyond a cutoff is kept for a look at the state, as if it ended at 1.
+static void test_target_read_keeps_the_whole_beside_what_is_cut(void **state) {
+    struct target_rdf target;
+    static const char table[] =
+        "0.05 0 0\n0.15 0.5 0.1\n0.25 1.5 0.2\n0.35 1 0.3\n0.45 2 0.3\n0.55 1.25 0.3\n";
+    assert_ok(read(state, table, ", \"cutoff\": 0.4", &target));
+    assert_int_equal(target.bins.count, 4);
+    assert_int_equal(target.whole.bins.count, 6);
+    assert_close(target.whole.g[4], 2 / 1.25, 1e-15);
+    assert_close(target.g[2], 1.5, 0);
+    mf_target_rdf_clear(&target);
+    assert_ok(read(state, table, ", \"cutoff\": 0.4, \"error_column\": 0", &target));
+    assert_int_equal(target.whole.bins.count, 0);
+    mf_target_rdf_clear(&target);
+}
+
 static void test_target_read_lets_the_first_bin_begin_above_0(void **state) {
     struct target_rdf target;
     assert_ok(read(state, "0.25 0 0\n0.35 0.5 0\n0.45 1.5 0\n0.55 1 0\n", "", &target));
@@ -289,6 +305,7 @@ int main(void) {
         TEST(test_target_convert_takes_votca_to_possible_pairs),
         TEST(test_target_read_refuses_what_votca_does_not_write),
         TEST(test_target_read_takes_the_bins_from_their_centres),
+        TEST(test_target_read_keeps_the_whole_beside_what_is_cut),
         TEST(test_target_read_lets_the_first_bin_begin_above_0),
         TEST(test_target_read_forgives_the_rounding_of_the_file),
         TEST(test_target_read_takes_the_columns_it_is_told),

@@ -18,7 +18,8 @@ static struct target_state make_state(struct box *box, double density) {
     *box = (struct box){3, {edge, edge, edge}};
     for (int k = 0; k < BINS; k++)
         error[k] = 1e-3;
-    return (struct target_state){&bins, g, error, box, BEADS, 1};
+    return (struct target_state){
+        .bins = &bins, .g = g, .error = error, .box = box, .count = BEADS, .tail = 1};
 }
 
 /// g = 1 + A exp(−r/ξ)/r has 1 + ρG = 1 + 4π ρ A ξ², of which a range of 7 ξ shows nine tenths.
@@ -45,6 +46,29 @@ static void test_target_state_tells_fluctuations_of_many_beads(void **state) {
     // Noise as large as what is said is no evidence.
     for (int k = 0; k < BINS; k++)
         error[k] = 1;
+    assert_false(mf_target_state_print(&look, line));
+}
+
+/// Beads of dimers: g leaves out the partner of each. An ideal gas of them has 1 + ρG = 2 of its
+/// beads, 1 of itself; what makes 6 of single beads is (1 + 5.4)/2 of dimers.
+static void test_target_state_tells_fluctuations_of_molecules(void **state) {
+    (void)state;
+    const double density = 0.3, reach = 0.7;
+    char line[TARGET_STATE_LINE];
+    struct box box;
+    struct target_state look = make_state(&box, density);
+    look.bound = 1;
+    look.inside = 1 / density;
+    for (int n = 0; n < 2; n++) {
+        const double a = n * 5.3 / (4 * acos(-1) * density * reach * reach);
+        for (int k = 0; k < BINS; k++) {
+            const double r = mf_rdf_bins_centre(&bins, (size_t)k);
+            g[k] = 1 + a * exp(-r / reach) / r;
+        }
+        assert_int_equal(mf_target_state_print(&look, line), n);
+    }
+    assert_contains(line, "1 + rho G of the molecules = 3.");
+    look.bound = 3; // of four beads in each the same is little
     assert_false(mf_target_state_print(&look, line));
 }
 
@@ -85,6 +109,7 @@ static void test_target_state_tells_a_crystal(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_target_state_tells_fluctuations_of_many_beads),
+        cmocka_unit_test(test_target_state_tells_fluctuations_of_molecules),
         cmocka_unit_test(test_target_state_tells_a_crystal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
