@@ -97,18 +97,31 @@ static enum status find_shares(struct measured *measured) {
 static enum status find_bins(struct measured *measured, const struct frame_box *box,
                              const struct trajectory_frame *first) {
     struct measured_plan *const plan = &measured->plan;
+    const double height = plan->height > 0 ? plan->height : mf_frame_box_min_height(box);
     if (plan->range == 0)
-        plan->range = usual_width * floor(usual_part * mf_frame_box_min_height(box) / usual_width);
+        plan->range = usual_width * floor(usual_part * height / usual_width);
     if (!(plan->range > 0))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu: the box is too small for a g(r): its shortest height "
                               "is %g nm; choose --range and --bins accordingly",
-                              first->file, first->number, mf_frame_box_min_height(box));
+                              first->file, first->number, height);
     if (plan->bins == 0)
         plan->bins = (int64_t)fmax(1, rint(plan->range / usual_width));
     measured->pairs.range = plan->range;
     measured->pairs.bins = (size_t)plan->bins;
     return STATUS_OK;
+}
+
+double mf_measured_height(const struct trajectory_frame *frames, size_t count, double least) {
+    struct frame_box box;
+    for (size_t k = 0; k < count; k++)
+        if (mf_frame_box_find(&box, &frames[k]) == STATUS_OK)
+            least = fmin(least, mf_frame_box_min_height(&box));
+    return least;
+}
+
+bool mf_measured_fits(const struct measured *measured, double height) {
+    return measured->in_vacuum || measured->pairs.range <= 0.5 * height;
 }
 
 static void plan_waves(struct measured *measured, const struct frame_box *box) {

@@ -26,6 +26,7 @@ struct run {
     struct frames frames;
     struct measured measured;
     struct beads_file beads;
+    double height; ///< of the least box, where the first does not do for the range [nm]; else 0
 };
 
 /// Every file that is read must be spared.
@@ -158,11 +159,33 @@ static void print_density(struct run *run) {
 static enum status begin_measuring(struct run *run) {
     struct measured_plan plan = run->request->measured;
     print_density(run);
+    plan.height = run->height;
     plan.motion.expected = mf_frames_expected(&run->frames, MEASURED_MOTION_FRAMES);
     if (run->request->molecules)
         plan.molecules = (struct measured_molecules_plan){&run->molecules.molecules, &run->types,
                                                           run->request->molecules};
     return mf_measured_begin(&run->measured, &plan, &run->mapping, run->frames.frame);
+}
+
+static enum status read_again(struct run *run, size_t skip);
+
+/// Pipes are read once.
+static bool can_be_read_again(const struct frames *frames) {
+    for (size_t k = 0; k < frames->plan.files; k++)
+        if (frames->source[k].bytes == 0)
+            return false;
+    return true;
+}
+
+/// The range was chosen by the first frame, and boxes shrink: begin again with one by the least.
+static enum status shorten_range(struct run *run, double least) {
+    size_t count = 1;
+    while (count > 0) {
+        TRY(mf_frames_next(&run->frames, &count));
+        least = mf_measured_height(run->frames.frame, count, least);
+    }
+    run->height = least;
+    return read_again(run, run->frames.plan.skip);
 }
 
 static enum status read_frames(struct run *run) {
@@ -176,6 +199,10 @@ static enum status read_frames(struct run *run) {
                 print_interval(run, count);
             TRY(begin_measuring(run));
         }
+        const double height = mf_measured_height(run->frames.frame, count, INFINITY);
+        if (run->request->measured.range == 0 && !mf_measured_fits(&run->measured, height) &&
+            can_be_read_again(&run->frames))
+            return shorten_range(run, height);
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
         TRY(add_beads(run, count));
         report(run);
@@ -199,14 +226,6 @@ static void print_slowest(const struct run *run, const struct frame_features_slo
         snprintf(text, size, "%s%s%s at %.3g to %.3g nm",
                  slowest->within ? "pairs within molecules" : "pairs", name[0] ? " " : "", name,
                  slowest->from, slowest->to);
-}
-
-/// Pipes are read once.
-static bool can_be_read_again(const struct frames *frames) {
-    for (size_t k = 0; k < frames->plan.files; k++)
-        if (frames->source[k].bytes == 0)
-            return false;
-    return true;
 }
 
 static enum status read_again(struct run *run, size_t skip) {
@@ -243,6 +262,7 @@ static enum status find_equilibrium(struct run *run) {
                       "the first %zu of %zu frames are not in equilibrium (%s) and are left out; "
                       "--begin 0 keeps them",
                       slowest.frames, run->measured.frames, what);
+    run->height = 0;
     return read_again(run, slowest.frames);
 }
 
