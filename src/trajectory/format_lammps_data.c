@@ -5,6 +5,7 @@
 #include "trajectory/lammps_data.h"
 #include "trajectory/trajectory.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -33,7 +34,8 @@ static enum status check(const struct lammps_data *data, const struct trajectory
     const char *const begin = (const char *)frame->raw.data;
     if (!data->is_text)
         return mf_frame_fail_line(frame, begin,
-                                  "a data file of LAMMPS has \"N atoms\" and \"… xlo xhi\"");
+                                  "a data file of LAMMPS has \"N atoms\" and \"… xlo xhi\" or "
+                                  "\"… avec\"");
     if (data->atom == NULL)
         return mf_frame_fail_line(frame, begin, "there is no section Atoms");
     if (data->atoms > frame->raw.size)
@@ -41,20 +43,39 @@ static enum status check(const struct lammps_data *data, const struct trajectory
     return STATUS_OK;
 }
 
-/// Masses by type; NAN: not given.
-static enum status read_masses(const struct lammps_data *data, const struct trajectory_frame *first,
-                               double unit, double *mass) {
+/// What the types of atoms are: shape [types + 1], by their numbers.
+struct types {
+    size_t count;
+    char (*name)[STRUCTURE_NAME];
+    double *mass; ///< NAN: not given
+};
+
+static void clear_types(struct types *types) {
+    mf_memory_free(types->name);
+    mf_memory_free(types->mass);
+}
+
+static size_t type_of(const struct types *types, const struct word *word) {
+    return mf_lammps_data_type(word, types->count, (const char(*)[STRUCTURE_NAME])types->name);
+}
+
+static enum status read_types(struct types *types, const struct lammps_data *data,
+                              const struct trajectory_frame *first, double unit) {
     struct word word[LAMMPS_DATA_WORDS];
-    int64_t type;
     const char *line = data->masses;
-    for (size_t k = 0; k <= data->types; k++)
-        mass[k] = NAN;
-    for (size_t k = 0; line && k < data->types; k++, line = mf_frame_next_line(first, line)) {
+    types->count = data->types;
+    TRY_ARRAY(types->name, types->count + 1);
+    TRY_ARRAY(types->mass, types->count + 1);
+    TRY(mf_lammps_data_names(first, data->labels, types->count, types->name));
+    for (size_t k = 0; k <= types->count; k++)
+        types->mass[k] = NAN;
+    for (size_t k = 0; line && k < types->count; k++, line = mf_frame_next_line(first, line)) {
         double value = 0;
-        if (mf_lammps_data_split(line, word) < 2 || !mf_words_integer(&word[0], &type) ||
-            type < 1 || (size_t)type > data->types || !mf_words_number(&word[1], &value))
+        const bool two = mf_lammps_data_split(line, word) >= 2;
+        const size_t type = two ? type_of(types, &word[0]) : 0;
+        if (type == 0 || !mf_words_number(&word[1], &value))
             return mf_frame_fail_line(first, line, "expected an atom type and its mass");
-        mass[type] = value * unit;
+        types->mass[type] = value * unit;
     }
     return STATUS_OK;
 }
@@ -74,45 +95,137 @@ static enum status split_atom(const struct lammps_style *style,
 }
 
 static enum status describe_atoms(struct structure *structure, const struct lammps_data *data,
-                                  const struct trajectory_frame *first, const double *mass) {
+                                  const struct trajectory_frame *first, const struct types *types) {
     const struct lammps_style *style;
     struct word word[LAMMPS_DATA_WORDS];
     size_t count = 0;
     TRY(mf_lammps_data_style(data, first, &style));
     structure->has_ids = structure->has_types = structure->has_names = true;
-    structure->names = STRUCTURE_TYPES;
+    structure->names = data->labels ? STRUCTURE_NAMES : STRUCTURE_TYPES;
     structure->has_molecules = style->molecule >= 0;
     structure->has_masses = data->masses != NULL;
     const char *line = data->atom;
     for (size_t k = 0; k < data->atoms; k++) {
         struct structure_atom *const atom = &structure->atom[k];
         TRY(split_atom(style, first, line, word, &count));
-        const struct word *const type = &word[style->type];
-        if (!mf_words_integer(&word[0], &atom->id) || !mf_words_integer(type, &atom->type) ||
-            atom->type < 1 || (size_t)atom->type > data->types ||
+        const size_t type = type_of(types, &word[style->type]);
+        if (!mf_words_integer(&word[0], &atom->id) || type == 0 ||
             (style->molecule >= 0 && !mf_words_integer(&word[style->molecule], &atom->molecule)))
             return mf_frame_fail_line(
                 first, line, "expected integers for id, molecule and type, types from 1 to %zu",
                 data->types);
-        mf_words_copy(type, atom->name, STRUCTURE_NAME);
-        atom->mass = mass[atom->type];
+        atom->type = (int64_t)type;
+        memcpy(atom->name, types->name[type], STRUCTURE_NAME);
+        atom->mass = types->mass[type];
         line = mf_frame_next_line(first, line);
     }
     return STATUS_OK;
 }
 
+static const struct {
+    const char *name, *article;
+} kinds[STRUCTURE_TERM_KINDS] = {{"bond", "a"}, {"angle", "an"}, {"dihedral", "a"}};
+
+/// One term: its number, its type, its atoms by their ids.
+static enum status read_term(const struct structure *structure,
+                             const struct trajectory_frame *first, const char *line,
+                             const struct word *word, int kind, struct structure_terms *terms) {
+    const size_t atoms = (size_t)kind + 2, n = terms->count;
+    int64_t id;
+    const size_t type =
+        mf_lammps_data_type(&word[1], terms->types, (const char(*)[STRUCTURE_NAME])terms->name);
+    if (type == 0 && terms->types > 0)
+        return mf_frame_fail_line(first, line,
+                                  "\"%.*s\" is not a type of %s %s: expected 1 to %zu or a label",
+                                  words_shown(&word[1]), word[1].begin, kinds[kind].article,
+                                  kinds[kind].name, terms->types);
+    terms->type[n] = (uint32_t)type;
+    for (size_t k = 0; k < atoms; k++) {
+        const size_t atom = mf_words_integer(&word[2 + k], &id) ? mf_structure_find(structure, id)
+                                                                : structure->atoms;
+        if (atom == structure->atoms)
+            return mf_frame_fail_line(first, line, "there is no atom %.*s",
+                                      words_shown(&word[2 + k]), word[2 + k].begin);
+        terms->atom[n * atoms + k] = (uint32_t)atom;
+        for (size_t other = 0; other < k; other++)
+            if (terms->atom[n * atoms + other] == (uint32_t)atom)
+                return mf_frame_fail_line(first, line, "the %s has an atom twice",
+                                          kinds[kind].name);
+    }
+    terms->count++;
+    return STATUS_OK;
+}
+
+/// The lines of a section, among which may be empty ones, up to as many as the header says.
+static enum status read_terms(const struct structure *structure,
+                              const struct lammps_data_terms *from,
+                              const struct trajectory_frame *first, int kind,
+                              struct structure_terms *terms) {
+    struct word word[LAMMPS_DATA_WORDS];
+    const size_t wanted = (size_t)kind + 4;
+    for (const char *line = from->first; line && terms->count < from->count;
+         line = mf_frame_next_line(first, line)) {
+        const size_t words = mf_lammps_data_split(line, word);
+        if (words > 0 && isalpha((unsigned char)*word[0].begin))
+            break;
+        if (words > 0 && words != wanted)
+            return mf_frame_fail_line(first, line,
+                                      "%zu words; expected in %ss %zu: number, type and %zu atoms",
+                                      words, kinds[kind].name, wanted, wanted - 2);
+        if (words > 0)
+            TRY(read_term(structure, first, line, word, kind, terms));
+    }
+    if (from->first == NULL || terms->count == from->count)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: expected \"%zu %ss\", found %zu: is the file complete?", first->file,
+                          from->count, kinds[kind].name, terms->count);
+}
+
+static enum status describe_terms(struct structure *structure, const struct lammps_data *data,
+                                  const struct trajectory_frame *first, int kind) {
+    const struct lammps_data_terms *const from = &data->terms[kind];
+    struct structure_terms *const terms = &structure->terms[kind];
+    if (from->count > first->raw.size)
+        return mf_frame_fail_line(first, (const char *)first->raw.data,
+                                  "the file is too short for so many %ss", kinds[kind].name);
+    terms->types = from->types;
+    TRY_ARRAY(terms->name, terms->types + 1);
+    TRY_ARRAY(terms->type, from->count);
+    TRY_ARRAY(terms->atom, from->count * ((size_t)kind + 2));
+    TRY(mf_lammps_data_names(first, from->labels, terms->types, terms->name));
+    return read_terms(structure, from, first, kind, terms);
+}
+
+/// Molecules are what bonds join where all atoms are said to be of one.
+static enum status find_molecules(struct structure *structure) {
+    const struct structure_terms *const bonds = &structure->terms[0];
+    bool told = !structure->has_molecules || bonds->count == 0;
+    for (size_t k = 1; k < structure->atoms; k++)
+        told = told || structure->atom[k].molecule != structure->atom[0].molecule;
+    if (told)
+        return STATUS_OK;
+    for (size_t k = 0; k < structure->atoms; k++)
+        structure->atom[k].molecule = 0;
+    return mf_structure_join(structure, (const uint32_t(*)[2])(const void *)bonds->atom,
+                             bonds->count);
+}
+
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
+    struct structure *const structure = &trajectory->structure;
     struct lammps_data data;
-    OWNED double *mass = NULL;
+    CLEARED_BY(clear_types) struct types types = {0};
     TRY(mf_lammps_data_read(&data, first));
     TRY(check(&data, first));
     if (data.units[0])
         TRY(mf_trajectory_found_units(trajectory, data.units));
-    TRY_ARRAY(mass, data.types + 1);
-    TRY(mf_structure_init(&trajectory->structure, data.atoms));
-    TRY(read_masses(&data, first, trajectory->scale.mass, mass));
-    TRY(describe_atoms(&trajectory->structure, &data, first, mass));
-    return mf_trajectory_sort(trajectory, first);
+    TRY(mf_structure_init(structure, data.atoms));
+    TRY(read_types(&types, &data, first, trajectory->scale.mass));
+    TRY(describe_atoms(structure, &data, first, &types));
+    TRY(mf_trajectory_sort(trajectory, first));
+    for (int kind = 0; kind < STRUCTURE_TERM_KINDS; kind++)
+        TRY(describe_terms(structure, &data, first, kind));
+    return find_molecules(structure);
 }
 
 /// Positions, with the images of their lines if these have them.
