@@ -33,6 +33,10 @@ static const struct known {
     {"pairs", PAIRS, 0},
 };
 
+/// What is read where laws do not matter; all other sections are then passed over.
+static const struct known constraints = {"constraints", TERMS, BONDED_BOND},
+                          other = {"", IGNORED, 0};
+
 struct reading {
     struct gromacs_reading terms;
     const struct known *section; ///< NULL: none has begun
@@ -166,13 +170,16 @@ static enum status begin_section(struct reading *reading, struct gromacs_line *l
     char name[GROMACS_WORD_SIZE] = "";
     if (sscanf(line->text, "[ %31[a-z_A-Z0-9] ]", name) != 1 || strchr(line->text, ']') == NULL)
         return mf_gromacs_fail(line, "expected \"[ name ]\"");
+    const bool held = strcmp(name, constraints.name) == 0;
+    reading->section = reading->terms.lawless ? held ? &constraints : &other : NULL;
     for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
-        if (strcmp(sections[k].name, name) == 0) {
+        if (strcmp(sections[k].name, name) == 0)
             reading->section = &sections[k];
-            reading->terms.order = sections[k].order;
-            return STATUS_OK;
-        }
-    return mf_gromacs_fail(line, "[ %s ] is not known", name);
+    if (reading->section == NULL)
+        return mf_gromacs_fail(line, "[ %s ] is not known", name);
+    reading->terms.order = reading->section->order;
+    reading->terms.constraints = reading->section == &constraints;
+    return STATUS_OK;
 }
 
 static enum status take(void *context, struct gromacs_line *line) {
@@ -195,6 +202,8 @@ static enum status take(void *context, struct gromacs_line *line) {
     case MOLECULES:
         return add_count(reading, line, &words);
     case EXCLUSIONS:
+        if (reading->lawless)
+            return STATUS_OK; // what is measured goes by nrexcl, as a fit of it will
         return mf_gromacs_fail(line, "[ exclusions ] are not read: nrexcl alone excludes pairs");
     case PAIRS:
         note(reading, line, "parameters of pairs are");
@@ -269,13 +278,21 @@ static void drop_groups(struct molecules *molecules, int order) {
 
 /// Moleculetypes of which there are none go, and what only they had.
 static enum status finish(struct gromacs_reading *reading, int known, const char *file) {
-    drop_kinds(&reading->molecules->topology);
-    drop_types(reading, known);
+    bool counted = !reading->lawless;
+    for (int k = 0; k < reading->molecules->topology.kinds; k++)
+        counted = counted || reading->molecules->topology.kind[k].count > 0;
+    if (counted) {
+        drop_kinds(&reading->molecules->topology);
+        drop_types(reading, known);
+    }
     for (int order = 0; order < BONDED_KINDS; order++)
         drop_groups(reading->molecules, order);
     return reading->molecules->topology.kinds > 0
                ? STATUS_OK
-               : mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] is empty", file);
+               : mf_status_fail(STATUS_BAD_INPUT,
+                                reading->lawless ? "%s: there is no [ moleculetype ]"
+                                                 : "%s: [ molecules ] is empty",
+                                file);
 }
 
 enum status mf_gromacs_topology_read(struct molecules *molecules, struct composition *composition,
@@ -286,8 +303,9 @@ enum status mf_gromacs_topology_read(struct molecules *molecules, struct composi
     own.terms = (struct gromacs_reading){
         .molecules = molecules,
         .composition = composition,
-        .length = mf_units_known(units) ? units->length : 1,
-        .energy = mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
+        .lawless = units == NULL,
+        .length = units && mf_units_known(units) ? units->length : 1,
+        .energy = units && mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
         .note = given};
     const int known = composition->types;
     *given = (struct gromacs_note){.text = ""};

@@ -131,7 +131,7 @@ static enum status add_term(struct reading *reading) {
     const size_t n = terms->terms[order]++;
     if (n >= from->count)
         return STATUS_OK; // more than the header says, which is told at the end
-    if (from->types == 0)
+    if (terms->types[order] == 0)
         return FAIL(reading, "the header has no \"%s types\"", mf_bonded_kinds[order]->name);
     struct lammps_term *const term = &terms->term[order][n];
     *term = (struct lammps_term){.line = reading->line, .type = (int)from->type[n]};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// LAMMPS's data files: one configuration, with masses, types and molecules.
+// LAMMPS's data files: one configuration, with masses, types, molecules and what joins them; and
+// its templates of molecules (manual, command `molecule`), which have the same sections but a type
+// and perhaps a mass for each atom, and no place in a box.
 #include "base/memory.h"
 #include "trajectory/lammps_data.h"
 #include "trajectory/trajectory.h"
@@ -32,14 +34,16 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
 
 static enum status check(const struct lammps_data *data, const struct trajectory_frame *frame) {
     const char *const begin = (const char *)frame->raw.data;
+    if (data->atoms > frame->raw.size)
+        return mf_frame_fail_line(frame, begin, "the file is too short for so many atoms");
+    if (data->kinds && data->atom == NULL)
+        return STATUS_OK; // a template
     if (!data->is_text)
         return mf_frame_fail_line(frame, begin,
                                   "a data file of LAMMPS has \"N atoms\" and \"… xlo xhi\" or "
                                   "\"… avec\"");
     if (data->atom == NULL)
         return mf_frame_fail_line(frame, begin, "there is no section Atoms");
-    if (data->atoms > frame->raw.size)
-        return mf_frame_fail_line(frame, begin, "the file is too short for so many atoms");
     return STATUS_OK;
 }
 
@@ -126,15 +130,30 @@ static const struct {
     const char *name, *article;
 } kinds[STRUCTURE_TERM_KINDS] = {{"bond", "a"}, {"angle", "an"}, {"dihedral", "a"}};
 
+/// The number of a type by its number or label or, where the header does not say how many there
+/// are, the next one for what was not seen yet; 0: there is none.
+static size_t find_term_type(const struct word *word, bool counted, struct structure_terms *terms) {
+    enum { MOST_UNCOUNTED = 1000 };
+    if (counted)
+        return mf_lammps_data_type(word, terms->types, (const char(*)[STRUCTURE_NAME])terms->name);
+    for (size_t k = 1; k <= terms->types; k++)
+        if (mf_words_same(word, terms->name[k]))
+            return k;
+    if (terms->types == MOST_UNCOUNTED ||
+        !mf_words_copy(word, terms->name[terms->types + 1], STRUCTURE_NAME))
+        return 0;
+    return ++terms->types;
+}
+
 /// One term: its number, its type, its atoms by their ids.
 static enum status read_term(const struct structure *structure,
                              const struct trajectory_frame *first, const char *line,
-                             const struct word *word, int kind, struct structure_terms *terms) {
+                             const struct word *word, int kind, bool counted,
+                             struct structure_terms *terms) {
     const size_t atoms = (size_t)kind + 2, n = terms->count;
     int64_t id;
-    const size_t type =
-        mf_lammps_data_type(&word[1], terms->types, (const char(*)[STRUCTURE_NAME])terms->name);
-    if (type == 0 && terms->types > 0)
+    const size_t type = find_term_type(&word[1], counted, terms);
+    if (type == 0)
         return mf_frame_fail_line(first, line,
                                   "\"%.*s\" is not a type of %s %s: expected 1 to %zu or a label",
                                   words_shown(&word[1]), word[1].begin, kinds[kind].article,
@@ -173,7 +192,7 @@ static enum status read_terms(const struct structure *structure,
                                       "%zu words; expected in %ss %zu: number, type and %zu atoms",
                                       words, kinds[kind].name, wanted, wanted - 2);
         if (words > 0)
-            TRY(read_term(structure, first, line, word, kind, terms));
+            TRY(read_term(structure, first, line, word, kind, from->types > 0, terms));
     }
     if (from->first == NULL || terms->count == from->count)
         return STATUS_OK;
@@ -190,7 +209,7 @@ static enum status describe_terms(struct structure *structure, const struct lamm
         return mf_frame_fail_line(first, (const char *)first->raw.data,
                                   "the file is too short for so many %ss", kinds[kind].name);
     terms->types = from->types;
-    TRY_ARRAY(terms->name, terms->types + 1);
+    TRY_ARRAY(terms->name, (from->types > 0 ? from->types : from->count) + 2);
     TRY_ARRAY(terms->type, from->count);
     TRY_ARRAY(terms->atom, from->count * ((size_t)kind + 2));
     TRY(mf_lammps_data_names(first, from->labels, terms->types, terms->name));
@@ -211,6 +230,37 @@ static enum status find_molecules(struct structure *structure) {
                              bonds->count);
 }
 
+/// "1 2", or "1 OW": an atom and its type, a number or a label; likewise its mass.
+static enum status describe_template(struct structure *structure, const struct lammps_data *data,
+                                     const struct trajectory_frame *first, double unit) {
+    struct word word[LAMMPS_DATA_WORDS];
+    const char *line = data->kinds, *mass = data->masses;
+    int64_t id;
+    structure->has_ids = structure->has_names = true;
+    structure->names = STRUCTURE_TYPES;
+    structure->has_masses = mass != NULL;
+    for (size_t k = 0; k < structure->atoms; k++)
+        structure->atom[k].id = (int64_t)k + 1;
+    for (size_t k = 0; k < structure->atoms; k++, line = mf_frame_next_line(first, line)) {
+        if (line == NULL || mf_lammps_data_split(line, word) != 2 ||
+            !mf_words_integer(&word[0], &id) || id < 1 || (size_t)id > structure->atoms ||
+            !mf_words_copy(&word[1], structure->atom[id - 1].name, STRUCTURE_NAME))
+            return mf_frame_fail_line(first, line ? line : (const char *)first->raw.data,
+                                      "expected an atom from 1 to %zu and its type",
+                                      structure->atoms);
+        if (!mf_words_integer(&word[1], &structure->atom[id - 1].type))
+            structure->names = STRUCTURE_NAMES;
+    }
+    for (size_t k = 0; mass && k < structure->atoms; k++, mass = mf_frame_next_line(first, mass)) {
+        double value = NAN;
+        if (mf_lammps_data_split(mass, word) != 2 || !mf_words_integer(&word[0], &id) || id < 1 ||
+            (size_t)id > structure->atoms || !mf_words_number(&word[1], &value))
+            return mf_frame_fail_line(first, mass, "expected an atom and its mass");
+        structure->atom[id - 1].mass = value * unit;
+    }
+    return STATUS_OK;
+}
+
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
     struct structure *const structure = &trajectory->structure;
     struct lammps_data data;
@@ -220,9 +270,13 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     if (data.units[0])
         TRY(mf_trajectory_found_units(trajectory, data.units));
     TRY(mf_structure_init(structure, data.atoms));
-    TRY(read_types(&types, &data, first, trajectory->scale.mass));
-    TRY(describe_atoms(structure, &data, first, &types));
-    TRY(mf_trajectory_sort(trajectory, first));
+    if (data.atom) {
+        TRY(read_types(&types, &data, first, trajectory->scale.mass));
+        TRY(describe_atoms(structure, &data, first, &types));
+        TRY(mf_trajectory_sort(trajectory, first));
+    } else {
+        TRY(describe_template(structure, &data, first, trajectory->scale.mass));
+    }
     for (int kind = 0; kind < STRUCTURE_TERM_KINDS; kind++)
         TRY(describe_terms(structure, &data, first, kind));
     return find_molecules(structure);
@@ -286,6 +340,11 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     struct lammps_data data;
     double box[3][3];
     TRY(mf_lammps_data_read(&data, frame));
+    if (data.atom == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: a template of a molecule has no place in a box: give it by "
+                              "--molecules",
+                              frame->file);
     frame->step = data.step;
     for (int k = 0; k < 9; k++)
         box[k / 3][k % 3] = data.box[k / 3][k % 3] * trajectory->scale.length;
@@ -300,7 +359,9 @@ static const char *const extensions[] = {"data", NULL};
 const struct trajectory_format mf_format_lammps_data = {
     .name = "lammps-data",
     .extensions = extensions,
-    .summary = "LAMMPS, data file: one configuration of style atomic, charge, molecular or full",
+    .summary =
+        "LAMMPS, data file: one configuration of style atomic, charge, molecular or full; for "
+        "--molecules also a template of \"molecule\"",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
     .fetch = fetch,

@@ -138,6 +138,7 @@ static const char **find_section(struct lammps_data *data, const struct word *wo
     return is_heading(word, count, "masses", "")       ? &data->masses
            : is_heading(word, count, "velocities", "") ? &data->velocities
            : is_heading(word, count, "atoms", "")      ? &data->atom
+           : is_heading(word, count, "types", "")      ? &data->kinds
                                                        : NULL;
 }
 

@@ -26,6 +26,7 @@ struct lammps_data {
     bool is_text; ///< has the number of atoms and the bounds of x, or vector a, in words
     const char *masses, *atom, *velocities; ///< first lines of the sections; NULL: there is none
     const char *labels;                     ///< of the types of atoms
+    const char *kinds;                      ///< of a template for "molecule": types of its atoms
     struct lammps_data_terms terms[STRUCTURE_TERM_KINDS];
     char style[32]; ///< comment of the section; "" if it has none
     char units[32]; ///< of the title; "" if it has none

@@ -7,6 +7,7 @@
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"
+#include "scene/molecules_listing.h"
 #include "work/measure_output.h"
 #include "work/measure_print.h"
 
@@ -22,6 +23,7 @@ struct run {
     struct trajectory structure;
     struct scene_molecules molecules;
     struct composition types; ///< of their beads
+    struct molecules_listing listing;
     struct mapping mapping;
     struct frames frames;
     struct measured measured;
@@ -61,13 +63,18 @@ static void print_lines(struct progress *progress, const struct bytes *notes) {
     }
 }
 
+/// The atoms of the trajectory, as the molecules' file knows them if it lists them.
+static const struct structure *atoms_of(const struct run *run) {
+    return run->listing.repeats > 0 ? &run->listing.structure : &run->structure.structure;
+}
+
 /// Beads are atoms whose types the molecules' file names.
 static enum status take_atoms(struct run *run) {
     const char *types[COMPOSITION_MAX_TYPES];
     for (int type = 0; type < run->types.types; type++)
         types[type] = run->types.name[type];
-    return mf_mapping_init_atoms(&run->mapping, &run->structure.structure, types,
-                                 (size_t)run->types.types, run->request->molecules);
+    return mf_mapping_init_atoms(&run->mapping, atoms_of(run), types, (size_t)run->types.types,
+                                 run->request->molecules);
 }
 
 /// Beads are what a map makes of atoms, or one a residue.
@@ -75,17 +82,28 @@ static enum status map_atoms(struct run *run) {
     struct mapping_plan plan;
     TRY(run->request->map ? mf_mapping_plan_read(&plan, run->request->map)
                           : mf_mapping_plan_default(&plan));
-    const enum status status = mf_mapping_init(&run->mapping, &plan, &run->structure.structure);
+    const enum status status = mf_mapping_init(&run->mapping, &plan, atoms_of(run));
     mf_mapping_plan_clear(&plan);
     return status;
+}
+
+static enum status read_molecules(struct run *run) {
+    const struct measure_request *const request = run->request;
+    if (request->molecules == NULL)
+        return STATUS_OK;
+    mf_molecules_listing_clear(&run->listing);
+    mf_scene_molecules_clear(&run->molecules);
+    TRY(mf_molecules_file_read(&run->molecules, &run->types, request->molecules));
+    return mf_molecules_listing_read(&run->listing, &run->molecules.molecules.topology,
+                                     request->molecules, request->frames.options.units,
+                                     &run->structure.structure, request->map != NULL);
 }
 
 /// What the atoms are, which of them are beads, and what molecules there may be.
 static enum status find_beads(struct run *run) {
     const struct measure_request *const request = run->request;
-    if (request->molecules)
-        TRY(mf_molecules_file_read(&run->molecules, &run->types, request->molecules));
     TRY(mf_trajectory_open(&run->structure, structure_file(run), &request->frames.options));
+    TRY(read_molecules(run));
     TRY(request->molecules && !request->map ? take_atoms(run) : map_atoms(run));
     print_lines(&run->progress, &run->mapping.notes);
     return STATUS_OK;
@@ -235,10 +253,7 @@ static enum status read_again(struct run *run, size_t skip) {
     mf_frames_close(&run->frames);
     if (run->request->beads)
         TRY(mf_beads_file_restart(&run->beads));
-    if (run->request->molecules) { // whose types have become those of the beads
-        mf_scene_molecules_clear(&run->molecules);
-        TRY(mf_molecules_file_read(&run->molecules, &run->types, run->request->molecules));
-    }
+    TRY(read_molecules(run)); // whose types have become those of the beads
     TRY(mf_frames_open(&run->frames, &plan, &run->structure.structure, structure_file(run)));
     return read_frames(run);
 }
@@ -353,6 +368,7 @@ enum status mf_measure_run(const struct measure_request *request,
         status = carry_out(&run, options);
     mf_beads_file_clear(&run.beads);
     mf_measured_clear(&run.measured);
+    mf_molecules_listing_clear(&run.listing);
     mf_scene_molecules_clear(&run.molecules);
     mf_frames_close(&run.frames);
     mf_mapping_clear(&run.mapping);
