@@ -24,7 +24,9 @@ add v $corpus/fit-votca/target.dist.tgt tests/reference_data/votca/*/*.dpot.imc
 add s $corpus/*/scene.json
 add r $corpus/*/run.json
 add x tests/fuzz/trajectories/*
-add l tests/fuzz/trajectories/*.d* tests/fuzz/trajectories/*.gsd
+add l tests/fuzz/trajectories/*.d* tests/fuzz/trajectories/*.gsd tests/fuzz/trajectories/*.mol
+add d tests/fuzz/trajectories/*.data tests/fuzz/trajectories/*.mol
+add g tests/fuzz/trajectories/*.top tests/fuzz/trajectories/*.itp
 printf 't# of LAMMPS\nAA\nN 3 R 1 3\n\n1 1 8 -1\n2 2 4 -2\n3 3 2 -3\n' >"$place/t-lammps-law"
 printf 't# Row r g\n100 3\n1 1 0 0\n2 2 1 1\n3 3 1 2\n' >"$place/t-lammps-average"
 printf 't"r / pm",U/kJ/mol,x (A)\n1,2,3\n2,3,4\n' >"$place/t-strokes"
