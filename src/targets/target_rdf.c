@@ -74,11 +74,16 @@ static enum status check_errors(const struct target_rdf_parameters *p,
     return STATUS_OK;
 }
 
-/// Whether x is 1, 2, 3, … and y grows from row to row, as no g(r) does.
+/// Whether x is 1, 2, 3, …, in whatever unit, and y grows in equal steps but for its digits, as r
+/// does and no g(r).
 static bool are_row_numbers(const struct target_rows *rows) {
-    bool numbers = rows->count > 2;
-    for (size_t k = 1; k < rows->count && numbers; k++)
-        numbers = rows->x[k] - rows->x[k - 1] == rows->x[0] && rows->y[k] > rows->y[k - 1];
+    static const double rounding = 0.2;
+    bool numbers = rows->count > 2 && rows->y[1] > rows->y[0];
+    for (size_t k = 1; k < rows->count && numbers; k++) {
+        const double step = rows->y[1] - rows->y[0], own = rows->y[k] - rows->y[k - 1];
+        numbers = fabs(rows->x[k] / rows->x[0] - (double)(k + 1)) < 1e-9 * (double)(k + 1) &&
+                  fabs(own - step) < rounding * step;
+    }
     return numbers;
 }
 
