@@ -97,14 +97,15 @@ static enum status find_shares(struct measured *measured) {
 static enum status find_bins(struct measured *measured, const struct frame_box *box,
                              const struct trajectory_frame *first) {
     struct measured_plan *const plan = &measured->plan;
-    const double height = plan->height > 0 ? plan->height : mf_frame_box_min_height(box);
+    if (plan->height == 0)
+        plan->height = mf_frame_box_min_height(box);
     if (plan->range == 0)
-        plan->range = usual_width * floor(usual_part * height / usual_width);
+        plan->range = usual_width * floor(usual_part * plan->height / usual_width);
     if (!(plan->range > 0))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu: the box is too small for a g(r): its shortest height "
                               "is %g nm; choose --range and --bins accordingly",
-                              first->file, first->number, height);
+                              first->file, first->number, plan->height);
     if (plan->bins == 0)
         plan->bins = (int64_t)fmax(1, rint(plan->range / usual_width));
     measured->pairs.range = plan->range;
@@ -120,8 +121,12 @@ double mf_measured_height(const struct trajectory_frame *frames, size_t count, d
     return least;
 }
 
-bool mf_measured_fits(const struct measured *measured, double height) {
-    return measured->in_vacuum || measured->pairs.range <= 0.5 * height;
+bool mf_measured_fits(const struct measured *measured, const struct measured_plan *asked,
+                      double height) {
+    const bool range = asked->range > 0 || measured->pairs.range <= 0.5 * height;
+    const bool escapes = asked->motion.leave_out || asked->motion.escape > 0 ||
+                         height >= measured_motion_most * measured->plan.height;
+    return measured->in_vacuum || (range && escapes);
 }
 
 static void plan_waves(struct measured *measured, const struct frame_box *box) {
@@ -352,7 +357,7 @@ static enum status begin_motion(struct measured *measured, const struct trajecto
     struct frame_box box;
     TRY(mf_frame_box_find(&box, first));
     return mf_measured_motion_begin(&measured->motion, &measured->plan.motion, measured->mapping,
-                                    first, &box);
+                                    first, &box, measured->plan.height);
 }
 
 /// Times are printed for frames at equal intervals.

@@ -195,7 +195,7 @@ static bool can_be_read_again(const struct frames *frames) {
     return true;
 }
 
-/// The range was chosen by the first frame, and boxes shrink: begin again with one by the least.
+/// Ranges were chosen by the first frame, and boxes shrink: begin again with those of the least.
 static enum status shorten_range(struct run *run, double least) {
     size_t count = 1;
     while (count > 0) {
@@ -218,8 +218,8 @@ static enum status read_frames(struct run *run) {
             TRY(begin_measuring(run));
         }
         const double height = mf_measured_height(run->frames.frame, count, INFINITY);
-        if (run->request->measured.range == 0 && !mf_measured_fits(&run->measured, height) &&
-            can_be_read_again(&run->frames))
+        if (!mf_measured_fits(&run->measured, &run->request->measured, height) &&
+            can_be_read_again(&run->frames) && run->height == 0)
             return shorten_range(run, height);
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
         TRY(add_beads(run, count));

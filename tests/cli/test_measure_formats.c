@@ -132,8 +132,9 @@ static void test_measure_has_a_range_by_the_least_box(void **state) {
     int length = 0;
     for (size_t f = 0; f < sizeof edge / sizeof *edge; f++) {
         length += snprintf(text + length, sizeof text - (size_t)length,
-                           "20\nLattice=\"%g 0 0 0 50 0 0 0 60\" Properties=species:S:1:pos:R:3\n",
-                           edge[f]);
+                           "20\nLattice=\"%g 0 0 0 50 0 0 0 60\" Properties=species:S:1:pos:R:3 "
+                           "Time=%zu\n",
+                           edge[f], 1000 * f);
         for (int k = 0; k < 20; k++)
             length += snprintf(text + length, sizeof text - (size_t)length, "Ar %g %g %g\n",
                                1.3 * k, 0.7 * k * k, 11.0 * k + edge[f]);
@@ -145,6 +146,10 @@ static void test_measure_has_a_range_by_the_least_box(void **state) {
     MEASURE("shrinking.xyz", "--static", "--range", "0.9", "-o", "told", "--quiet");
     results_assert_same("usual", "told",
                         (const char *const[]){"rdf.tsv", "structure_factor.tsv", NULL});
+    // In time, escapes are followed no further either: 0.9 of half the least box.
+    MEASURE("shrinking.xyz", "--begin", "0", "-o", "moving");
+    assert_contains(result.err, "g(r) to 0.9 nm in 90 bins");
+    assert_contains(result.err, "escape times of pairs from 0.45 to 0.9 nm");
     REFUSED("frame 4: the range of g(r), 1.5 nm, is beyond half the shortest height",
             "shrinking.xyz", "--static", "--range", "1.5", "-o", "none");
 }
