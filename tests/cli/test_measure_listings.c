@@ -156,6 +156,24 @@ static void test_molecules_are_those_of_a_topology_whatever_its_laws(void **stat
                         (const char *const[]){"rdf_Q0-Qa.tsv", "bond_lengths.tsv", NULL});
 }
 
+/// A library defines more kinds and types than a system may have, with laws that nobody knows.
+static void test_moleculetypes_that_nobody_has_are_not_looked_at(void **state) {
+    char text[SIZE];
+    int length = 0;
+    for (int k = 0; k < 30; k++)
+        ADD("[ moleculetype ]\nL%d 1\n[ atoms ]\n1 T%d+ 1 LIB A 1\n2 T%d 1 LIB B 1\n[ bonds ]\n1 2 "
+            "99 x\n",
+            k, k, k);
+    small_inputs_write(*state, "library.itp", text, NULL, NULL);
+    length = 0;
+    ADD("#include \"library.itp\"\n%s[ system ]\ns\n[ molecules ]\nL3 0\nLIP %d\n", topology,
+        CHAINS);
+    small_inputs_write(*state, "topol.top", text, NULL, NULL);
+    write_gro(*state);
+    MEASURE("chains.gro", "--molecules", "topol.top", "-o", "out");
+    assert_chains("LIP", "R_g^2 0.08699 ");
+}
+
 static void test_topologies_say_their_own_errors(void **state) {
     write_gro(*state);
     small_inputs_write(*state, "topol.top",
@@ -174,6 +192,7 @@ int main(void) {
         TEST(test_molecules_are_those_of_a_data_file_of_lammps),
         TEST(test_molecules_are_those_of_a_template_of_lammps),
         TEST(test_molecules_are_those_of_a_topology_whatever_its_laws),
+        TEST(test_moleculetypes_that_nobody_has_are_not_looked_at),
         TEST(test_topologies_say_their_own_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
