@@ -3,7 +3,6 @@
 
 #include "base/memory.h"
 #include "io/data_heading.h"
-#include "io/data_lammps.h"
 #include "io/output.h"
 #include "io/text_file.h"
 
@@ -277,7 +276,7 @@ static enum status read_table(struct data_table *table, const char *file, struct
     size_t length = 0, again = 0;
     *table = (struct data_table){0};
     CHECK(mf_text_file_read(file, &text, &length));
-    table->averaged = mf_data_lammps_strip(text, &again) == DATA_LAMMPS_AVERAGE;
+    table->lammps = mf_data_lammps_strip(text, &again);
     if (again > 0)
         CHECK(mf_status_fail(STATUS_BAD_INPUT,
                              "%s:%zu: a second section of LAMMPS begins: of several write the one "

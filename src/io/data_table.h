@@ -13,6 +13,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "io/data_lammps.h"
 #include "io/units_scale.h"
 
 #include <stdbool.h>
@@ -25,7 +26,8 @@ struct data_table {
     char *flags;    ///< shape [rows]: the letter that ends each row; NULL unless asked for
     char *header;   ///< names of columns: the last line before the rows, as mf_data_heading_make
     char *comments; ///< all comment lines before the data, as they stand in the file
-    bool averaged;  ///< by LAMMPS's fix ave/time: of g(r) the third column counts neighbours
+    /// What of LAMMPS it is: of a g(r) that is averaged the third column counts neighbours.
+    enum data_lammps_kind lammps;
 };
 
 /// Read a file. BAD_INPUT with file:line for a word that is not a finite number, a row of another

@@ -10,6 +10,7 @@
 #include "io/data_table.h"
 #include "io/votca.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // One curve ---------------------------------------------------------------------------------------
@@ -52,6 +53,30 @@ static enum status take_gromacs(struct data_table *table, const char *file) {
     return STATUS_OK;
 }
 
+/// A table of LAMMPS may say its units in a comment, as its own do (manual, "pair_style table").
+static enum status name_lammps_units(struct data_table *table, bool of_angles) {
+    static const struct {
+        const char *name, *length, *energy;
+    } styles[] = {{"real", "A", "kcal/mol"}, {"metal", "A", "eV"}};
+    enum { HEADER_SIZE = 64 };
+    static const char key[] = "UNITS:";
+    const char *at = table->lammps == DATA_LAMMPS_LAW ? strstr(table->comments, key) : NULL;
+    if (at == NULL)
+        return STATUS_OK;
+    at += strlen(key);
+    at += strspn(at, " \t");
+    for (size_t k = 0; k < sizeof styles / sizeof *styles; k++) {
+        const size_t length = strlen(styles[k].name);
+        if (strncmp(at, styles[k].name, length) != 0 || strcspn(at, " \t,\n") != length)
+            continue;
+        mf_memory_free(table->header);
+        TRY_ARRAY(table->header, HEADER_SIZE);
+        snprintf(table->header, HEADER_SIZE, "q[%s] U[%s] F",
+                 of_angles ? "degrees" : styles[k].length, styles[k].energy);
+    }
+    return STATUS_OK;
+}
+
 /// r and Φ, E or ω of a table; only Φ may begin with a core.
 static enum status read_columns(const char *file, const char *const unit[2], double min, bool core,
                                 const struct units *units, double **x, double **value,
@@ -64,6 +89,7 @@ static enum status read_columns(const char *file, const char *const unit[2], dou
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: column 1 numbers the rows: leave it out, so that %s is first",
                               file, strcmp(unit[0], "degrees") == 0 ? "the angle" : "r");
+    TRY(name_lammps_units(&table, strcmp(unit[0], "degrees") == 0));
     TRY(mf_data_table_check_increasing(&table, file, 0, min));
     TRY(mf_data_table_convert(&table, file, 0, unit[0], units));
     TRY(mf_data_table_convert(&table, file, 1, unit[1], units));

@@ -72,7 +72,7 @@ static enum status find_columns(struct target_columns *columns, const struct dat
             "the file has no errors",
             columns->file, table->line[0], table->columns, (long long)columns->error);
     if (columns->error < 0)
-        columns->error = table->averaged || table->columns < USUAL_ERROR ||
+        columns->error = table->lammps == DATA_LAMMPS_AVERAGE || table->columns < USUAL_ERROR ||
                                  columns->x == USUAL_ERROR || columns->y == USUAL_ERROR
                              ? 0
                              : USUAL_ERROR;

@@ -99,6 +99,34 @@ static void test_tables_of_others_are_the_law_of_their_r_and_energy(void **state
     results_assert_same("dimers", "of_lammps", same);
 }
 
+/// In nm and kJ/mol, of a table in Å and kcal/mol.
+static void test_tables_of_lammps_have_the_units_that_they_say(void **state) {
+    static const char physical[] =
+        "{\"units\": \"nm-ps\", \"temperature\": 300, \"seed\": 2, \"box\": [4, 4, 4],\n"
+        "\"time_step\": 0.001, \"particles\": {\"count\": 600, \"mass\": 20},\n"
+        "\"conservative\": {\"law\": \"table\", \"file\": \"law.tsv\"},\n"
+        "\"measure\": {\"equilibration\": 20, \"samples\": 10, \"every\": 5}}\n";
+    static const char *const begins[] =
+        {"# r[A] U[kcal/mol] F\n", "# DATE: 2022-01-01 UNITS: real CONTRIBUTOR: x\nAA\nN 21\n\n"},
+                             *const folders[] = {"named", "lammps"};
+    for (int lammps = 0; lammps < 2; lammps++) {
+        char text[SIZE];
+        size_t length = (size_t)snprintf(text, SIZE, "%s", begins[lammps]);
+        for (int k = 0; k <= 20; k++) {
+            if (lammps)
+                length += (size_t)snprintf(text + length, SIZE - length, "%d ", k + 1);
+            length += (size_t)snprintf(text + length, SIZE - length, "%g %g %g\n", 2 + 0.2 * k,
+                                       0.05 * (20 - k) * (20 - k), 0.5 * (20 - k));
+        }
+        small_inputs_write(*state, "law.tsv", text, NULL, NULL);
+        small_inputs_write(*state, "scene.json", physical, NULL, NULL);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", folders[lammps], "--quiet");
+        run_program_assert_code(&result, 0);
+    }
+    results_assert_same("named", "lammps",
+                        (const char *const[]){"rdf.tsv", "thermodynamics.tsv", NULL});
+}
+
 static void test_tables_of_others_are_refused_when_they_say_too_little(void **state) {
     refuse(*state, scene, NUMBERED, "column 1 numbers the rows: leave it out, so that r is first");
     refuse(*state, dimers, NUMBERED, "column 1 numbers the rows: leave it out, so that r is first");
@@ -113,6 +141,7 @@ static void test_tables_of_others_are_refused_when_they_say_too_little(void **st
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_tables_of_others_are_the_law_of_their_r_and_energy),
+        TEST(test_tables_of_lammps_have_the_units_that_they_say),
         TEST(test_tables_of_others_are_refused_when_they_say_too_little),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -147,7 +147,7 @@ static void assert_r_and_values(void **state, const char *text, bool averaged, s
     for (int k = 0; k < 9; k++)
         assert_identical(table.values[k], expected[k]);
     assert_int_equal(table.line[0], first_line);
-    assert_int_equal(table.averaged, averaged);
+    assert_int_equal(table.lammps, averaged ? DATA_LAMMPS_AVERAGE : DATA_LAMMPS_LAW);
     mf_data_table_clear(&table);
 }
 
