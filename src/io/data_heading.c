@@ -94,6 +94,39 @@ static void bracket_units(char *heading) {
     }
 }
 
+/// Whether a unit of `length` bytes that ends with its name stands behind a name that is no unit,
+/// as in "r/nm" but not in "kJ/mol".
+static bool is_behind_name(const char *heading, const char *stroke, const char *unit,
+                           size_t length) {
+    const char *end = stroke;
+    while (end > heading && end[-1] == ' ')
+        end--;
+    const char *name = end;
+    while (name > heading && strchr(" \t,;", name[-1]) == NULL)
+        name--;
+    return end > name && !is_unit(name, (size_t)(end - name)) && is_unit(unit, length);
+}
+
+/// Write units after a stroke, "r/nm" and "Distance / Angstrom", in brackets.
+static void bracket_strokes(char *heading) {
+    const char *const ends = strpbrk(heading, "\t,;") ? "[(\t,;" : "[(\t,; ";
+    for (char *at = heading; *(at += strcspn(at, "/[(")); at++) {
+        const char *const unit = at + 1 + strspn(at + 1, " ");
+        const size_t length = strcspn(unit, ends);
+        if (*at != '/') {
+            at += strcspn(at, "])");
+            at -= *at == '\0';
+        } else if (is_behind_name(heading, at, unit, length)) {
+            const char *const rest = unit + length;
+            *at = '[';
+            memmove(at + 1, unit, length);
+            memmove(at + 2 + length, rest, strlen(rest) + 1);
+            at[1 + length] = ']';
+            at += 1 + length;
+        }
+    }
+}
+
 /// Make one word of a name with blanks or marks in it, and of it and its unit.
 static void join_words(char *heading) {
     bool unit = false;
@@ -121,9 +154,11 @@ void mf_data_heading_make(const struct data_line *before, const struct data_line
     if (parted && (units || label || between != ' ')) {
         write_names(names, units ? &line : NULL, between, label, heading);
         bracket_units(heading);
+        bracket_strokes(heading);
         join_words(heading);
     } else {
         mf_data_line_copy(names, mf_data_line_start(names), heading);
         bracket_units(heading);
+        bracket_strokes(heading);
     }
 }

@@ -273,9 +273,15 @@ static void read_comments(struct data_table *table, const struct layout *layout,
 static enum status read_table(struct data_table *table, const char *file, struct layout *layout) {
     enum status status = STATUS_OK;
     char *text = NULL;
-    size_t length = 0;
+    size_t length = 0, again = 0;
     *table = (struct data_table){0};
     CHECK(mf_text_file_read(file, &text, &length));
+    table->lammps = mf_data_lammps_strip(text, &again);
+    if (again > 0)
+        CHECK(mf_status_fail(STATUS_BAD_INPUT,
+                             "%s:%zu: a second section of LAMMPS begins: of several write the one "
+                             "that is meant into a file of its own",
+                             file, again));
     recognise(layout, text);
     CHECK(measure(table, file, text, layout));
     NEW_ARRAY(table->values, table->rows * table->columns);
@@ -328,6 +334,17 @@ void mf_data_table_clear(struct data_table *table) {
     mf_memory_free(table->header);
     mf_memory_free(table->comments);
     *table = (struct data_table){0};
+}
+
+bool mf_data_table_is_numbered(const struct data_table *table) {
+    enum { FEWEST_ROWS = 3, FEWEST_COLUMNS = 3 };
+    bool numbered = table->rows >= FEWEST_ROWS && table->columns >= FEWEST_COLUMNS;
+    for (size_t k = 0; k < table->rows && numbered; k++) {
+        const double *const row = table->values + k * table->columns;
+        numbered =
+            row[0] == (double)(k + 1) && (k == 0 || row[1] > row[1 - (ptrdiff_t)table->columns]);
+    }
+    return numbered;
 }
 
 size_t mf_data_table_find(const struct data_table *table, const char *name) {

@@ -8,12 +8,15 @@
 /// which do not begin with a number. Words may stand in quotes. Columns of text are left out and
 /// not counted. A line `&` ends the first set of data, and what follows is another. Decimals begin
 /// with a point or, where columns are parted by semicolons or tabs or stand in quotes, all of them
-/// with a comma.
+/// with a comma. Of LAMMPS's tables one section is read, without the numbers of its rows, which are
+/// not counted as a column either.
 #pragma once
 
 #include "base/status.h"
+#include "io/data_lammps.h"
 #include "io/units_scale.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 struct data_table {
@@ -23,6 +26,8 @@ struct data_table {
     char *flags;    ///< shape [rows]: the letter that ends each row; NULL unless asked for
     char *header;   ///< names of columns: the last line before the rows, as mf_data_heading_make
     char *comments; ///< all comment lines before the data, as they stand in the file
+    /// What of LAMMPS it is: of a g(r) that is averaged the third column counts neighbours.
+    enum data_lammps_kind lammps;
 };
 
 /// Read a file. BAD_INPUT with file:line for a word that is not a finite number, a row of another
@@ -45,6 +50,10 @@ void mf_data_table_clear(struct data_table *table);
 /// BAD_INPUT with file:line of the first row that does not.
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                            size_t column, double min) MUST_USE;
+
+/// Whether the first of at least three columns numbers the rows, 1, 2, 3, …, and the second
+/// increases, as r does: what a table of another program is if nobody has said so.
+bool mf_data_table_is_numbered(const struct data_table *table);
 
 /// Number, from 1, of the column that the line of names calls `name`, units in brackets aside; 0 if
 /// there is none, or if that line has not as many names as there are columns. Tested:

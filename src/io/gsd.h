@@ -11,12 +11,16 @@ enum { GSD_HEAD = 256, GSD_ENTRY = 32, GSD_NAME = 64 };
 
 enum gsd_type {
     GSD_UINT8 = 1,
-    GSD_UINT32 = 3,
-    GSD_UINT64 = 4,
-    GSD_INT8 = 5,
-    GSD_INT32 = 7,
-    GSD_FLOAT = 9,
-    GSD_CHARACTER = 11
+    GSD_UINT16,
+    GSD_UINT32,
+    GSD_UINT64,
+    GSD_INT8,
+    GSD_INT16,
+    GSD_INT32,
+    GSD_INT64,
+    GSD_FLOAT,
+    GSD_DOUBLE,
+    GSD_CHARACTER
 };
 
 /// The lowest `bytes` bytes of a number; a float; a text of `width` bytes, filled with 0.

@@ -30,9 +30,11 @@ enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_fra
                               frame->file, frame->number);
     for (int i = 0; i < 3; i++)
         if (!frame->periodic[i])
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: frame %zu is not periodic along vector %c of its box",
-                                  frame->file, frame->number, 'a' + i);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: frame %zu is not periodic along vector %c of its box: give a "
+                "box that is, by --box",
+                frame->file, frame->number, 'a' + i);
     find_edges(frame->box, box->edge);
     mf_frame_reciprocal(frame, box->inverse);
     for (int i = 0; i < 3; i++) {

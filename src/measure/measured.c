@@ -97,18 +97,36 @@ static enum status find_shares(struct measured *measured) {
 static enum status find_bins(struct measured *measured, const struct frame_box *box,
                              const struct trajectory_frame *first) {
     struct measured_plan *const plan = &measured->plan;
+    if (plan->height == 0)
+        plan->height = mf_frame_box_min_height(box);
     if (plan->range == 0)
-        plan->range = usual_width * floor(usual_part * mf_frame_box_min_height(box) / usual_width);
+        plan->range = usual_width * floor(usual_part * plan->height / usual_width);
     if (!(plan->range > 0))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu: the box is too small for a g(r): its shortest height "
                               "is %g nm; choose --range and --bins accordingly",
-                              first->file, first->number, mf_frame_box_min_height(box));
+                              first->file, first->number, plan->height);
     if (plan->bins == 0)
         plan->bins = (int64_t)fmax(1, rint(plan->range / usual_width));
     measured->pairs.range = plan->range;
     measured->pairs.bins = (size_t)plan->bins;
     return STATUS_OK;
+}
+
+double mf_measured_height(const struct trajectory_frame *frames, size_t count, double least) {
+    struct frame_box box;
+    for (size_t k = 0; k < count; k++)
+        if (mf_frame_box_find(&box, &frames[k]) == STATUS_OK)
+            least = fmin(least, mf_frame_box_min_height(&box));
+    return least;
+}
+
+bool mf_measured_fits(const struct measured *measured, const struct measured_plan *asked,
+                      double height) {
+    const bool range = asked->range > 0 || measured->pairs.range <= 0.5 * height;
+    const bool escapes = asked->motion.leave_out || asked->motion.escape > 0 ||
+                         height >= measured_motion_most * measured->plan.height;
+    return measured->in_vacuum || (range && escapes);
 }
 
 static void plan_waves(struct measured *measured, const struct frame_box *box) {
@@ -339,7 +357,7 @@ static enum status begin_motion(struct measured *measured, const struct trajecto
     struct frame_box box;
     TRY(mf_frame_box_find(&box, first));
     return mf_measured_motion_begin(&measured->motion, &measured->plan.motion, measured->mapping,
-                                    first, &box);
+                                    first, &box, measured->plan.height);
 }
 
 /// Times are printed for frames at equal intervals.

@@ -17,6 +17,7 @@
 
 struct measured_plan {
     double range;         ///< of g(r) [nm]
+    double height;        ///< least of the boxes, by which ranges that are 0 go; 0: the first's
     int64_t bins;         ///< of it
     double q_maximum;     ///< of S(q) [1/nm]; NAN: 4π ρ^(1/3); 0: it is not measured
     int64_t waves;        ///< of one of its bins at most; 0: 10
@@ -71,6 +72,14 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
 /// test_measured.
 enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
                             size_t count) MUST_USE;
+
+/// The least of the heights of these frames' boxes, and of `least` [nm].
+double mf_measured_height(const struct trajectory_frame *frames, size_t count, double least);
+
+/// Whether a box of such a height holds the ranges that were not asked for, of g(r) and of escape
+/// times, which the first box or the plan's height has given.
+bool mf_measured_fits(const struct measured *measured, const struct measured_plan *asked,
+                      double height);
 
 void mf_measured_clear(struct measured *measured);
 

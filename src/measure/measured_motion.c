@@ -82,11 +82,11 @@ static enum status choose_lags(const struct measured_motion *motion,
 
 static enum status begin_etd(struct measured_motion *motion, const struct motion_plan *plan,
                              size_t beads, const struct trajectory_frame *first,
-                             const struct frame_box *box) {
+                             const struct frame_box *box, double height) {
     const double spacing = cbrt(box->volume / (double)beads),
-                 half = 0.5 * mf_frame_box_min_height(box);
+                 most = measured_motion_most * 0.5 * height;
     const double wish = motion->plan.escape;
-    const double far = wish > 0 ? wish : 0.01 * floor(100 * fmin(usual_far * spacing, 0.9 * half));
+    const double far = wish > 0 ? wish : 0.01 * floor(100 * fmin(usual_far * spacing, most));
     const struct etd_grid grid = {.r_minimum = 0.01 * rint(100 * usual_near / usual_far * far),
                                   .r_maximum = far,
                                   .bins = ESCAPE_BINS,
@@ -117,7 +117,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct measured_motion_plan *plan,
                                      const struct mapping *mapping,
                                      const struct trajectory_frame *first,
-                                     const struct frame_box *box) {
+                                     const struct frame_box *box, double height) {
     enum status status = STATUS_OK;
     struct motion_plan lags;
     *motion = (struct measured_motion){.plan = *plan};
@@ -137,7 +137,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
     CHECK(choose_lags(motion, first, &lags));
     CHECK(mf_motion_init_endless(&motion->motion, &lags, mapping->beads, motion->interval,
                                  motion->has_vacf));
-    CHECK(begin_etd(motion, &lags, mapping->beads, first, box));
+    CHECK(begin_etd(motion, &lags, mapping->beads, first, box, height));
     motion->begun = true;
 done:
     if (status != STATUS_OK)

@@ -23,11 +23,14 @@ extern const char *const mf_measured_velocities[];
 /// Frames from which on the usual window does not grow.
 enum { MEASURED_MOTION_FRAMES = 1000 };
 
+/// Pairs are followed to at most this part of half the least height of boxes, unless told.
+static const double measured_motion_most = 0.9;
+
 struct measured_motion_plan {
     bool leave_out;  ///< all of it: frames need no times
     int velocities;  ///< enum measured_velocities
     double window;   ///< [ps]; 0: a tenth of the trajectory, or 100 frames if that is less
-    double escape;   ///< r_maximum of escape times [nm]; 0: 1.6 ρ^(−1/3)
+    double escape;   ///< r_maximum of escape times [nm]; 0: 1.6 ρ^(−1/3), at most 0.45 heights
     size_t expected; ///< frames that there may be; 0: not known
     int threads;
 };
@@ -47,7 +50,8 @@ struct measured_motion {
     struct series temperature; ///< kinetic, of the beads [K]
 };
 
-/// Prepare for frames whose first two are given, of beads in a box of that density.
+/// Prepare for frames whose first two are given, of beads in a box of that density, and boxes of at
+/// least that height.
 /// Nothing begins, and `begun` stays false, if that is wanted, or if the frames have no times.
 /// Fails: BAD_INPUT for velocities that are asked for and missing, or a window that is too short;
 /// NO_MEMORY.
@@ -55,7 +59,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct measured_motion_plan *plan,
                                      const struct mapping *mapping,
                                      const struct trajectory_frame *first,
-                                     const struct frame_box *box) MUST_USE;
+                                     const struct frame_box *box, double height) MUST_USE;
 
 /// How far apart pairs are looked for in frame number `frame` from 0; 0: not at all.
 double mf_measured_motion_pairs_range(const struct measured_motion *motion, size_t frame);

@@ -2,7 +2,6 @@
 #include "scene/molecules_file.h"
 
 #include "topologies/gromacs_topology.h"
-#include "topologies/lammps_topology.h"
 #include "topologies/structure_topology.h"
 #include "base/memory.h"
 #include "io/json.h"
@@ -29,15 +28,18 @@ static bool is_topology(const char *file) {
     return end && (strcmp(end, ".top") == 0 || strcmp(end, ".itp") == 0);
 }
 
-/// A topology of GROMACS, in nm, or what a PSF or GSD lists.
+bool mf_molecules_file_lists(const char *file) {
+    return is_topology(file) || mf_structure_topology_is(file);
+}
+
+/// A topology of GROMACS, whatever its laws, or what a PSF, GSD or data file lists.
 static enum status read_topology(struct scene_molecules *molecules, struct composition *types,
                                  const char *file) {
-    static const struct units nanometres = {0};
     struct gromacs_note note;
     enum status status =
         mf_structure_topology_is(file)
             ? mf_structure_topology_read(&molecules->molecules, types, file)
-            : mf_gromacs_topology_read(&molecules->molecules, types, file, &nanometres, &note);
+            : mf_gromacs_topology_read(&molecules->molecules, types, file, NULL, &note);
     if (status == STATUS_OK)
         status = mf_scene_groups_clear_tables(&molecules->molecules);
     if (status != STATUS_OK)
@@ -61,12 +63,7 @@ enum status mf_molecules_file_read(struct scene_molecules *molecules, struct com
     struct json_document *document;
     *molecules = (struct scene_molecules){0};
     *types = (struct composition){0};
-    if (mf_lammps_topology_is(file))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: a LAMMPS data file does not define the order of molecules in a "
-                              "trajectory: give a JSON file or a GROMACS topology",
-                              file);
-    if (is_topology(file) || mf_structure_topology_is(file))
+    if (mf_molecules_file_lists(file))
         return read_topology(molecules, types, file);
     TRY(open_file(&document, file));
     struct json_object root = mf_json_root(document);

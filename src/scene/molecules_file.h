@@ -5,10 +5,13 @@
 #include "scene/scene_molecules.h"
 
 /// Read the "molecules" of a JSON file, which may be a scene or used.json: whatever else it holds
-/// but the types of "particles" is left alone; or those of a GROMACS topology (.top, .itp), a PSF
-/// or a GSD, or of <cg_bonded> of VOTCA's maps (.xml). Groups are those that the kinds name; a kind
-/// without "count" has 0.
+/// but the types of "particles" is left alone; or those of a GROMACS topology (.top, .itp), of a
+/// PSF, a GSD, a data file or template of LAMMPS, or of <cg_bonded> of VOTCA's maps (.xml). Groups
+/// are those that the kinds name; a kind without "count" has 0.
 /// @param[out] types  of beads, in the order of a scene: those of "particles" first; without counts
 /// Fails: BAD_INPUT with all faults of the file, IO, NO_MEMORY. Tested: cli/test_measure_molecules.
 enum status mf_molecules_file_read(struct scene_molecules *molecules, struct composition *types,
                                    const char *file) MUST_USE;
+
+/// Whether a file lists atoms, as all of these but JSON and maps do: by its name.
+bool mf_molecules_file_lists(const char *file);

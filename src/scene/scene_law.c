@@ -10,9 +10,72 @@
 #include "io/data_table.h"
 #include "io/votca.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // One curve ---------------------------------------------------------------------------------------
+
+/// GROMACS's table of a pair (reference manual, "Tabulated interaction functions"): r, then f, g
+/// and h, each with its negative derivative, without a name; V = q q f + C6 g + C12 h.
+static bool is_of_gromacs(const struct data_table *table) {
+    enum { COLUMNS = 7 };
+    return table->columns == COLUMNS && mf_data_table_find(table, "r") == 0;
+}
+
+/// Move g or h, whichever is not 0, to the second column: a potential of its own has C6 or C12 = 1.
+/// The rows of 0 at the beginning are what GROMACS has where nothing comes; the curve goes on
+/// there.
+static enum status take_gromacs(struct data_table *table, const char *file) {
+    enum { F = 1, G = 3, H = 5 };
+    size_t some[H + 1] = {0}, first = 0;
+    for (size_t k = table->rows; k-- > 0;)
+        for (int c = F; c <= H; c += 2)
+            some[c] += table->values[k * table->columns + (size_t)c] != 0;
+    if (some[F] > 0 || (some[G] > 0) == (some[H] > 0))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: seven columns, as GROMACS has a table of a pair, r f -f' g -g' h "
+            "-h', of which f is to be 0 and one of g and h not: write r and the "
+            "potential, C6 g + C12 h, in two columns",
+            file);
+    const size_t of = some[G] > 0 ? G : H;
+    while (table->values[first * table->columns + of] == 0)
+        first++;
+    table->rows -= first;
+    for (size_t k = 0; k < table->rows; k++) {
+        const double *const from = table->values + (k + first) * table->columns;
+        double *const to = table->values + k * table->columns;
+        const double r = from[0], potential = from[of];
+        to[0] = r;
+        to[1] = potential;
+        table->line[k] = table->line[k + first];
+    }
+    return STATUS_OK;
+}
+
+/// A table of LAMMPS may say its units in a comment, as its own do (manual, "pair_style table").
+static enum status name_lammps_units(struct data_table *table, bool of_angles) {
+    static const struct {
+        const char *name, *length, *energy;
+    } styles[] = {{"real", "A", "kcal/mol"}, {"metal", "A", "eV"}};
+    enum { HEADER_SIZE = 64 };
+    static const char key[] = "UNITS:";
+    const char *at = table->lammps == DATA_LAMMPS_LAW ? strstr(table->comments, key) : NULL;
+    if (at == NULL)
+        return STATUS_OK;
+    at += strlen(key);
+    at += strspn(at, " \t");
+    for (size_t k = 0; k < sizeof styles / sizeof *styles; k++) {
+        const size_t length = strlen(styles[k].name);
+        if (strncmp(at, styles[k].name, length) != 0 || strcspn(at, " \t,\n") != length)
+            continue;
+        mf_memory_free(table->header);
+        TRY_ARRAY(table->header, HEADER_SIZE);
+        snprintf(table->header, HEADER_SIZE, "q[%s] U[%s] F",
+                 of_angles ? "degrees" : styles[k].length, styles[k].energy);
+    }
+    return STATUS_OK;
+}
 
 /// r and Φ, E or ω of a table; only Φ may begin with a core.
 static enum status read_columns(const char *file, const char *const unit[2], double min, bool core,
@@ -20,6 +83,13 @@ static enum status read_columns(const char *file, const char *const unit[2], dou
                                 size_t *count) {
     CLEARED_BY(mf_data_table_clear) struct data_table table = {0};
     TRY(core ? mf_data_table_read_core(&table, file) : mf_data_table_read(&table, file, 2));
+    if (core && is_of_gromacs(&table))
+        TRY(take_gromacs(&table, file));
+    if (mf_data_table_is_numbered(&table))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: column 1 numbers the rows: leave it out, so that %s is first",
+                              file, strcmp(unit[0], "degrees") == 0 ? "the angle" : "r");
+    TRY(name_lammps_units(&table, strcmp(unit[0], "degrees") == 0));
     TRY(mf_data_table_check_increasing(&table, file, 0, min));
     TRY(mf_data_table_convert(&table, file, 0, unit[0], units));
     TRY(mf_data_table_convert(&table, file, 1, unit[1], units));

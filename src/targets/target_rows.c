@@ -72,10 +72,10 @@ static enum status find_columns(struct target_columns *columns, const struct dat
             "the file has no errors",
             columns->file, table->line[0], table->columns, (long long)columns->error);
     if (columns->error < 0)
-        columns->error =
-            table->columns < USUAL_ERROR || columns->x == USUAL_ERROR || columns->y == USUAL_ERROR
-                ? 0
-                : USUAL_ERROR;
+        columns->error = table->lammps == DATA_LAMMPS_AVERAGE || table->columns < USUAL_ERROR ||
+                                 columns->x == USUAL_ERROR || columns->y == USUAL_ERROR
+                             ? 0
+                             : USUAL_ERROR;
     if (columns->error > 0 && !is_known(table, columns->error))
         columns->error = 0;
     columns->is_usual_error =

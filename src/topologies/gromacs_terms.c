@@ -108,7 +108,10 @@ enum status mf_gromacs_add_type(struct gromacs_reading *reading, const struct gr
         (function = find_function(order, number)) == NULL)
         return STATUS_OK;
     type->number = (int)number;
-    TRY(read_values(line, words, beads + 1, parameters_of(function), type->value, &type->words));
+    const enum status status =
+        read_values(line, words, beads + 1, parameters_of(function), type->value, &type->words);
+    if (status != STATUS_OK)
+        return reading->lawless ? STATUS_OK : status;
     reading->types++;
     return STATUS_OK;
 }
@@ -162,19 +165,26 @@ static enum status set_number(const struct gromacs_line *line, struct bonded_cur
                                  value);
 }
 
+/// "A-B", of the types of a term.
+static void name_types(const struct gromacs_reading *reading, int order,
+                       const struct topology_term *term, char *name, size_t size) {
+    const struct topology_kind *kind = mf_gromacs_last_kind(reading);
+    size_t length = 0;
+    for (int k = 0; k < mf_bonded_kinds[order]->beads && length < size; k++)
+        length += (size_t)snprintf(name + length, size - length, "%s%s", k ? "-" : "",
+                                   reading->composition->name[kind->type[term->bead[k]]]);
+}
+
 /// "A-B", of the types of a term; "A-B_2" if another group is called so.
 static void name_group(const struct gromacs_reading *reading, int order,
                        const struct topology_term *term, char name[TOPOLOGY_NAME_SIZE]) {
-    const struct topology_kind *kind = mf_gromacs_last_kind(reading);
-    char plain[TOPOLOGY_NAME_SIZE - 4] = "";
-    for (int k = 0; k < mf_bonded_kinds[order]->beads; k++) {
-        const size_t length = strlen(plain);
-        snprintf(plain + length, sizeof plain - length, "%s%s", k ? "-" : "",
-                 reading->composition->name[kind->type[term->bead[k]]]);
-    }
+    char plain[TOPOLOGY_NAME_SIZE - 4], numbered[2 * TOPOLOGY_NAME_SIZE];
+    name_types(reading, order, term, plain, sizeof plain);
     snprintf(name, TOPOLOGY_NAME_SIZE, "%s", plain);
-    for (int number = 2; mf_molecules_group(reading->molecules, order, name); number++)
-        snprintf(name, TOPOLOGY_NAME_SIZE, "%s_%d", plain, number);
+    for (int number = 2; mf_molecules_group(reading->molecules, order, name); number++) {
+        snprintf(numbered, sizeof numbered, "%s_%d", plain, number);
+        snprintf(name, TOPOLOGY_NAME_SIZE, "%.*s", TOPOLOGY_NAME_SIZE - 1, numbered);
+    }
 }
 
 /// The law of a function with these numbers. Tables are distinguished by their numbers alone.
@@ -229,14 +239,69 @@ static enum status find_group(struct gromacs_reading *reading, const struct grom
 
 // Terms -------------------------------------------------------------------------------------------
 
+/// The group of a term whose law does not matter: one for all of the same function and numbers, as
+/// they stand there, or of the same types where there are none. It is a table without points.
+static enum status find_lawless_group(struct gromacs_reading *reading,
+                                      const struct gromacs_line *line,
+                                      const struct gromacs_words *words,
+                                      struct topology_term *term) {
+    const int order = reading->order, beads = mf_bonded_kinds[order]->beads;
+    const struct bonded_law *const law = mf_gromacs_tables[order].law;
+    struct molecules *const molecules = reading->molecules;
+    char text[sizeof((struct bonded_table *)NULL)->file] = "held";
+    size_t length = reading->constraints ? strlen(text) : 0;
+    text[length] = '\0';
+    if (words->count == beads + 1)
+        name_types(reading, order, term, text + length, sizeof text - length);
+    for (int k = beads; k < words->count && (length = strlen(text)) < sizeof text - 1; k++)
+        snprintf(text + length, sizeof text - length, " %s", words->word[k]);
+    for (term->group = 0; term->group < molecules->groups[order]; term->group++) {
+        const struct bonded_curve *const known = &molecules->group[order][term->group].curve;
+        if (known->law == law &&
+            strcmp(((const struct bonded_table *)known->parameters)->file, text) == 0)
+            return STATUS_OK;
+    }
+    if (term->group == MOLECULES_MAX_GROUPS)
+        return mf_gromacs_fail(line, "there are more than %d groups of %ss of other parameters",
+                               MOLECULES_MAX_GROUPS, mf_bonded_kinds[order]->name);
+    struct molecules_group *const group = &molecules->group[order][term->group];
+    TRY(mf_bonded_create(&group->curve, law));
+    struct bonded_table *const table = group->curve.parameters;
+    snprintf(table->file, sizeof table->file, "%s", text);
+    name_group(reading, order, term, group->name);
+    molecules->groups[order]++;
+    return STATUS_OK;
+}
+
+/// The group of a term by its function and numbers, or those of its types.
+static enum status find_law(struct gromacs_reading *reading, const struct gromacs_line *line,
+                            const struct gromacs_words *words, struct topology_term *term) {
+    const int order = reading->order, beads = mf_bonded_kinds[order]->beads;
+    const struct gromacs_function *function;
+    double values[2 * GROMACS_MAX_PARAMETERS];
+    int count;
+    TRY(read_function(line, order, words->word[beads], &function));
+    TRY(read_values(line, words, beads + 1, parameters_of(function), values, &count));
+    if (count == 0)
+        TRY(find_values(reading, line, function, term, values));
+    return find_group(reading, line, function, values, term);
+}
+
+/// What is no law of ours is a group all the same where laws do not matter.
+static enum status find_term_group(struct gromacs_reading *reading, const struct gromacs_line *line,
+                                   const struct gromacs_words *words, struct topology_term *term) {
+    const enum status status =
+        reading->constraints ? STATUS_BAD_INPUT : find_law(reading, line, words, term);
+    return status == STATUS_BAD_INPUT && reading->lawless
+               ? find_lawless_group(reading, line, words, term)
+               : status;
+}
+
 enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gromacs_line *line,
                                 const struct gromacs_words *words) {
     const int order = reading->order, beads = mf_bonded_kinds[order]->beads;
     struct topology_kind *kind = mf_gromacs_last_kind(reading);
-    const struct gromacs_function *function;
     struct topology_term term = {.group = 0};
-    double values[2 * GROMACS_MAX_PARAMETERS];
-    int count;
     if (kind && kind->terms[order] == GROMACS_MAX_TERMS)
         return mf_gromacs_fail(line, "%s has more than %d %ss", kind->name, GROMACS_MAX_TERMS,
                                mf_bonded_kinds[order]->name);
@@ -249,11 +314,7 @@ enum status mf_gromacs_add_term(struct gromacs_reading *reading, const struct gr
                                    kind->name, kind->beads);
         term.bead[k] = (int)number - 1;
     }
-    TRY(read_function(line, order, words->word[beads], &function));
-    TRY(read_values(line, words, beads + 1, parameters_of(function), values, &count));
-    if (count == 0)
-        TRY(find_values(reading, line, function, &term, values));
-    TRY(find_group(reading, line, function, values, &term));
+    TRY(find_term_group(reading, line, words, &term));
     TRY(mf_gromacs_reserve((void **)&kind->term[order], (size_t)kind->terms[order],
                            &reading->term_capacity[order], sizeof term));
     kind->term[order][kind->terms[order]++] = term;

@@ -21,8 +21,10 @@ struct gromacs_reading {
     struct molecules *molecules;
     struct composition *composition;
     double length, energy; ///< λ [nm], k_B T_0 [kJ/mol]
+    bool lawless;          ///< nobody needs laws: terms of any function are groups
     struct gromacs_note *note;
     int order;                      ///< of the section: of terms and their types
+    bool constraints;               ///< the section is of bonds that are held
     struct gromacs_term_type *type; ///< shape [GROMACS_MAX_TYPES]
     size_t types;
     size_t atom_capacity, term_capacity[BONDED_KINDS]; ///< of the kind that is being read

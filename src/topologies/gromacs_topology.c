@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "topologies/gromacs_topology.h"
 
+#include "base/growing.h"
 #include "base/memory.h"
 #include "base/names.h"
 #include "topologies/gromacs_terms.h"
@@ -33,9 +34,21 @@ static const struct known {
     {"pairs", PAIRS, 0},
 };
 
+/// What is read where laws do not matter; all other sections are then passed over.
+static const struct known constraints = {"constraints", TERMS, BONDED_BOND},
+                          other = {"", IGNORED, 0};
+
+/// A moleculetype that [ molecules ] counts.
+struct counted {
+    char name[TOPOLOGY_NAME_SIZE];
+};
+
 struct reading {
     struct gromacs_reading terms;
     const struct known *section; ///< NULL: none has begun
+    struct counted *counted;     ///< what a first reading finds; none: all kinds are read
+    size_t count, capacity;
+    bool is_left_out; ///< the moleculetype that is being read
 };
 
 static struct gromacs_words split(struct gromacs_line *line) {
@@ -63,6 +76,16 @@ static int find_kind(const struct topology *topology, const char *name) {
     while (k < topology->kinds && strcmp(topology->kind[k].name, name) != 0)
         k++;
     return k;
+}
+
+/// Libraries define dozens of moleculetypes: those that nobody has are not looked at.
+static bool is_counted(const struct reading *own, const char *word) {
+    char name[TOPOLOGY_NAME_SIZE];
+    copy_name(word, name);
+    for (size_t k = 0; k < own->count; k++)
+        if (strcmp(own->counted[k].name, name) == 0)
+            return true;
+    return own->count == 0;
 }
 
 static enum status begin_kind(struct gromacs_reading *reading, const struct gromacs_line *line,
@@ -140,7 +163,7 @@ static enum status add_atom(struct gromacs_reading *reading, const struct gromac
 
 // Counts ------------------------------------------------------------------------------------------
 
-/// [ molecules ]: kinds of which there are none go, and counts of one name add up.
+/// [ molecules ]: counts of one name add up.
 static enum status add_count(struct gromacs_reading *reading, const struct gromacs_line *line,
                              const struct gromacs_words *words) {
     struct topology *topology = &reading->molecules->topology;
@@ -150,11 +173,13 @@ static enum status add_count(struct gromacs_reading *reading, const struct groma
         return mf_gromacs_fail(line, "expected a moleculetype and a count up to 1e8");
     copy_name(words->word[0], name);
     const int k = find_kind(topology, name);
+    if (count == 0)
+        return STATUS_OK;
     if (k == topology->kinds)
         return mf_gromacs_fail(line, "there is no moleculetype %.40s", words->word[0]);
     if (topology->kind[k].beads == 0)
         return mf_gromacs_fail(line, "moleculetype %.40s has no atoms", words->word[0]);
-    for (int later = k; later < topology->kinds && count > 0; later++)
+    for (int later = k; later < topology->kinds; later++)
         reading->note->scattered |= topology->kind[later].count > 0;
     topology->kind[k].count += count;
     return STATUS_OK;
@@ -166,13 +191,16 @@ static enum status begin_section(struct reading *reading, struct gromacs_line *l
     char name[GROMACS_WORD_SIZE] = "";
     if (sscanf(line->text, "[ %31[a-z_A-Z0-9] ]", name) != 1 || strchr(line->text, ']') == NULL)
         return mf_gromacs_fail(line, "expected \"[ name ]\"");
+    const bool held = strcmp(name, constraints.name) == 0;
+    reading->section = reading->terms.lawless ? held ? &constraints : &other : NULL;
     for (size_t k = 0; k < sizeof sections / sizeof *sections; k++)
-        if (strcmp(sections[k].name, name) == 0) {
+        if (strcmp(sections[k].name, name) == 0)
             reading->section = &sections[k];
-            reading->terms.order = sections[k].order;
-            return STATUS_OK;
-        }
-    return mf_gromacs_fail(line, "[ %s ] is not known", name);
+    if (reading->section == NULL)
+        return mf_gromacs_fail(line, "[ %s ] is not known", name);
+    reading->terms.order = reading->section->order;
+    reading->terms.constraints = reading->section == &constraints;
+    return STATUS_OK;
 }
 
 static enum status take(void *context, struct gromacs_line *line) {
@@ -183,7 +211,13 @@ static enum status take(void *context, struct gromacs_line *line) {
     if (own->section == NULL)
         return mf_gromacs_fail(line, "expected a section, such as \"[ defaults ]\"");
     const struct gromacs_words words = split(line);
-    switch (own->section->section) {
+    const enum section section = own->section->section;
+    if (section == MOLECULETYPE)
+        own->is_left_out = words.count > 0 && !is_counted(own, words.word[0]);
+    if (own->is_left_out &&
+        (section == MOLECULETYPE || section == ATOMS || section == TERMS || section == EXCLUSIONS))
+        return STATUS_OK;
+    switch (section) {
     case TERMS:
         return mf_gromacs_add_term(reading, line, &words);
     case TERM_TYPES:
@@ -195,6 +229,8 @@ static enum status take(void *context, struct gromacs_line *line) {
     case MOLECULES:
         return add_count(reading, line, &words);
     case EXCLUSIONS:
+        if (reading->lawless)
+            return STATUS_OK; // what is measured goes by nrexcl, as a fit of it will
         return mf_gromacs_fail(line, "[ exclusions ] are not read: nrexcl alone excludes pairs");
     case PAIRS:
         note(reading, line, "parameters of pairs are");
@@ -205,77 +241,40 @@ static enum status take(void *context, struct gromacs_line *line) {
     return STATUS_OK;
 }
 
-// What nobody has ---------------------------------------------------------------------------------
+// The whole ---------------------------------------------------------------------------------------
 
-static void drop_kinds(struct topology *topology) {
-    int left = 0;
-    for (int k = 0; k < topology->kinds; k++) {
-        struct topology_kind kind = topology->kind[k];
-        topology->kind[k] = (struct topology_kind){0};
-        if (kind.count == 0)
-            mf_topology_kind_clear(&kind);
-        else
-            topology->kind[left++] = kind;
+/// Of a first reading: the names in [ molecules ] of what there is any of.
+static enum status take_counted(void *context, struct gromacs_line *line) {
+    struct reading *own = context;
+    char name[GROMACS_WORD_SIZE] = "";
+    int64_t count;
+    if (line->text[0] == '[') {
+        own->is_left_out =
+            sscanf(line->text, "[ %31[a-z_A-Z0-9] ]", name) != 1 || strcmp(name, "molecules") != 0;
+        return STATUS_OK;
     }
-    topology->kinds = left;
+    if (own->is_left_out)
+        return STATUS_OK;
+    const struct gromacs_words words = split(line);
+    if (words.count != 2 || !mf_gromacs_is_integer(words.word[1], 1, INT64_MAX, &count))
+        return STATUS_OK; // which is told when it is read again
+    TRY(mf_growing_reserve(&own->counted, &own->capacity, own->count, own->count + 1,
+                           sizeof *own->counted, 16));
+    copy_name(words.word[0], own->counted[own->count++].name);
+    return STATUS_OK;
 }
 
-/// Count the beads of each type. Types after the first `known` go if they have none.
-static void drop_types(struct gromacs_reading *reading, int known) {
-    struct composition *composition = reading->composition;
-    struct topology *topology = &reading->molecules->topology;
-    int number[COMPOSITION_MAX_TYPES] = {0}, left = known;
+/// Count the beads of each type.
+static enum status finish(struct gromacs_reading *reading, bool counted, const char *file) {
+    const struct topology *const topology = &reading->molecules->topology;
     for (int k = 0; k < topology->kinds; k++)
         for (int bead = 0; bead < topology->kind[k].beads; bead++)
-            composition->count[topology->kind[k].type[bead]] += topology->kind[k].count;
-    for (int type = 0; type < composition->types; type++) {
-        number[type] = type < known ? type : left;
-        if (type < known || composition->count[type] == 0)
-            continue;
-        composition->count[left] = composition->count[type];
-        memmove(composition->name[left++], composition->name[type], COMPOSITION_NAME_SIZE);
-    }
-    for (int type = left; type < composition->types; type++)
-        composition->count[type] = 0;
-    composition->types = left;
-    for (int k = 0; k < topology->kinds; k++)
-        for (int bead = 0; bead < topology->kind[k].beads; bead++)
-            topology->kind[k].type[bead] = number[topology->kind[k].type[bead]];
-}
-
-static void drop_groups(struct molecules *molecules, int order) {
-    struct topology *topology = &molecules->topology;
-    bool used[MOLECULES_MAX_GROUPS] = {false};
-    int number[MOLECULES_MAX_GROUPS] = {0}, left = 0;
-    for (int k = 0; k < topology->kinds; k++)
-        for (int n = 0; n < topology->kind[k].terms[order]; n++)
-            used[topology->kind[k].term[order][n].group] = true;
-    for (int g = 0; g < molecules->groups[order]; g++) {
-        struct molecules_group group = molecules->group[order][g];
-        number[g] = left;
-        molecules->group[order][g] = (struct molecules_group){{0}, {0}};
-        if (used[g])
-            molecules->group[order][left++] = group;
-        else
-            mf_bonded_clear(&group.curve);
-    }
-    molecules->groups[order] = left;
-    for (int k = 0; k < topology->kinds; k++)
-        for (int n = 0; n < topology->kind[k].terms[order]; n++) {
-            struct topology_term *term = &topology->kind[k].term[order][n];
-            term->group = number[term->group];
-        }
-}
-
-/// Moleculetypes of which there are none go, and what only they had.
-static enum status finish(struct gromacs_reading *reading, int known, const char *file) {
-    drop_kinds(&reading->molecules->topology);
-    drop_types(reading, known);
-    for (int order = 0; order < BONDED_KINDS; order++)
-        drop_groups(reading->molecules, order);
-    return reading->molecules->topology.kinds > 0
+            reading->composition->count[topology->kind[k].type[bead]] += topology->kind[k].count;
+    if (!counted && !reading->lawless)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] is empty", file);
+    return topology->kinds > 0
                ? STATUS_OK
-               : mf_status_fail(STATUS_BAD_INPUT, "%s: [ molecules ] is empty", file);
+               : mf_status_fail(STATUS_BAD_INPUT, "%s: there is no [ moleculetype ]", file);
 }
 
 enum status mf_gromacs_topology_read(struct molecules *molecules, struct composition *composition,
@@ -286,15 +285,19 @@ enum status mf_gromacs_topology_read(struct molecules *molecules, struct composi
     own.terms = (struct gromacs_reading){
         .molecules = molecules,
         .composition = composition,
-        .length = mf_units_known(units) ? units->length : 1,
-        .energy = mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
+        .lawless = units == NULL,
+        .length = units && mf_units_known(units) ? units->length : 1,
+        .energy = units && mf_units_known(units) ? mf_units_energy_kj_per_mol(units) : 1,
         .note = given};
-    const int known = composition->types;
     *given = (struct gromacs_note){.text = ""};
     NEW_ARRAY(own.terms.type, GROMACS_MAX_TYPES);
+    own.is_left_out = true;
+    CHECK(mf_gromacs_text_read(file, take_counted, &own));
+    own.is_left_out = false;
     CHECK(mf_gromacs_text_read(file, take, &own));
-    CHECK(finish(&own.terms, known, file));
+    CHECK(finish(&own.terms, own.count > 0, file));
 done:
+    mf_memory_free(own.counted);
     mf_memory_free(own.terms.type);
     return status;
 }

@@ -21,7 +21,9 @@ struct gromacs_note {
 /// that a fit looks for (mf_scene_groups_are_fitted).
 /// @param[in,out] molecules  no kinds and groups yet; the topology is not completed
 /// @param[in,out] composition  types and counts, to which those of the molecules are added
-/// @param[in] units  λ and k_B T_0; if not known 1 nm and 1 kJ/mol
+/// @param[in] units  λ and k_B T_0; if not known 1 nm and 1 kJ/mol; NULL: laws do not matter, as of
+/// what is measured. Then terms of any function are taken, and constraints as bonds, each group
+/// with a table without points; so are files without [ molecules ], whose kinds have the count 0.
 /// Fails: BAD_INPUT with file and line for what is not known or cannot be; IO; NO_MEMORY. What was
 /// read before is to be cleared. Tested: cli/test_topologies.
 enum status mf_gromacs_topology_read(struct molecules *molecules, struct composition *composition,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "topologies/lammps_terms.h"
 
-#include "base/growing.h"
-#include "trajectory/words.h"
+#include "base/memory.h"
+#include "trajectory/lammps_data.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -15,7 +15,8 @@ enum section { HEADER, TERMS, COEFFICIENTS, OTHER };
 
 /// LAMMPS begins the names of its sections with a capital letter.
 #define SECTIONS(NAME, kind, ...)                                                                  \
-    {#kind "s", TERMS, BONDED_##NAME}, {#kind " Coeffs", COEFFICIENTS, BONDED_##NAME},
+    {#kind "s", TERMS, BONDED_##NAME}, {#kind " Coeffs", COEFFICIENTS, BONDED_##NAME},             \
+        {#kind " Type Labels", OTHER, BONDED_##NAME},
 
 /// Sections of data files; of what is OTHER nothing is taken here.
 static const struct known {
@@ -25,6 +26,7 @@ static const struct known {
 } sections[] = {
     BONDED_LIST(SECTIONS){"masses", OTHER, 0},
     {"atoms", OTHER, 0},
+    {"atom Type Labels", OTHER, 0},
     {"velocities", OTHER, 0},
     {"pair Coeffs", OTHER, 0},
     {"pairIJ Coeffs", OTHER, 0},
@@ -38,7 +40,6 @@ struct reading {
     const struct known *section;    ///< NULL: the header
     char style[TOPOLOGY_NAME_SIZE]; ///< of the section of coefficients, "" if it is not given
     int64_t promised[BONDED_KINDS];
-    size_t capacity[BONDED_KINDS];
 };
 
 struct words {
@@ -122,37 +123,27 @@ static enum status begin_section(struct reading *reading, const char *line,
 
 // Sections ----------------------------------------------------------------------------------------
 
-static enum status add_term(struct reading *reading, const struct words *words) {
+/// The next term of the structure, which stands in this line.
+static enum status add_term(struct reading *reading) {
     struct lammps_terms *terms = reading->terms;
     const int order = reading->section->order, beads = mf_bonded_kinds[order]->beads;
-    const char *name = mf_bonded_kinds[order]->name;
-    struct lammps_term term = {.line = reading->line};
-    int64_t number;
-    if (words->count != 2 + beads)
-        return FAIL(reading, "%d words; expected in %s %d: number, type and %d atoms", words->count,
-                    mf_bonded_kinds[order]->plural, 2 + beads, beads);
-    if (!mf_words_integer(&words->word[1], &number) || number < 1 || number > terms->types[order])
-        return FAIL(reading, "\"%.*s\" is not a type of %s %s: expected 1 to %lld",
-                    (int)words->word[1].length, words->word[1].begin,
-                    mf_bonded_kinds[order]->article, name, (long long)terms->types[order]);
-    term.type = (int)number;
-    for (int k = 0; k < beads; k++) {
-        const struct word *word = &words->word[2 + k];
-        const size_t atom = mf_words_integer(word, &number)
-                                ? mf_structure_find(reading->structure, number)
-                                : reading->structure->atoms;
-        if (atom == reading->structure->atoms)
-            return FAIL(reading, "there is no atom %.*s",
-                        (int)(word->length < 40 ? word->length : 40), word->begin);
-        term.atom[k] = (int)atom;
-        for (int other = 0; other < k; other++)
-            if (term.atom[other] == term.atom[k])
-                return FAIL(reading, "the %s has an atom twice", name);
-    }
-    TRY(mf_growing_reserve(&terms->term[order], &reading->capacity[order], terms->terms[order],
-                           terms->terms[order] + 1, sizeof term, 64));
-    terms->term[order][terms->terms[order]++] = term;
+    const struct structure_terms *const from = &reading->structure->terms[order];
+    const size_t n = terms->terms[order]++;
+    if (n >= from->count)
+        return STATUS_OK; // more than the header says, which is told at the end
+    if (terms->types[order] == 0)
+        return FAIL(reading, "the header has no \"%s types\"", mf_bonded_kinds[order]->name);
+    struct lammps_term *const term = &terms->term[order][n];
+    *term = (struct lammps_term){.line = reading->line, .type = (int)from->type[n]};
+    for (int k = 0; k < beads; k++)
+        term->atom[k] = (int)from->atom[n * (size_t)beads + (size_t)k];
     return STATUS_OK;
+}
+
+/// The type of a line of coefficients, by its number or label; 0: there is none.
+static size_t find_type(const struct reading *reading, const struct word *word) {
+    const struct structure_terms *const of = &reading->structure->terms[reading->section->order];
+    return mf_lammps_data_type(word, of->types, (const char(*)[STRUCTURE_NAME])of->name);
 }
 
 /// "1 30.0 1.5", in a section of several styles "1 harmonic 30.0 1.5".
@@ -161,16 +152,16 @@ static enum status add_coefficient(struct reading *reading, const struct words *
     struct lammps_terms *terms = reading->terms;
     const bool hybrid = strcmp(reading->style, "hybrid") == 0;
     const int first = hybrid ? 2 : 1;
-    int64_t type;
+    const size_t type = find_type(reading, &words->word[0]);
     if (reading->style[0] == '\0')
         return FAIL(reading, "unknown style: name it, as in \"%c%s # harmonic\"",
                     toupper((unsigned char)reading->section->name[0]), reading->section->name + 1);
-    if (!mf_words_integer(&words->word[0], &type) || type < 1 || type > terms->types[order])
+    if (type == 0)
         return FAIL(reading, "expected a type from 1 to %lld and its coefficients",
                     (long long)terms->types[order]);
     struct lammps_coefficient *own = &terms->coefficient[order][type];
     if (own->line > 0)
-        return FAIL(reading, "duplicate type %lld", (long long)type);
+        return FAIL(reading, "duplicate type %zu", type);
     *own = (struct lammps_coefficient){.line = reading->line, .count = words->count - first};
     if (own->count < 0 || own->count > LAMMPS_MAX_NUMBERS)
         return FAIL(reading, "no known style has %d numbers", own->count);
@@ -181,16 +172,28 @@ static enum status add_coefficient(struct reading *reading, const struct words *
     for (int n = 0; n < own->count; n++)
         if (!mf_words_number(&words->word[first + n], &own->number[n]))
             return FAIL(reading, "expected a number, found \"%.*s\"",
-                        (int)(words->word[first + n].length % 40), words->word[first + n].begin);
+                        words_shown(&words->word[first + n]), words->word[first + n].begin);
     return STATUS_OK;
 }
 
 static enum status make_coefficients(struct reading *reading) {
     struct lammps_terms *terms = reading->terms;
-    for (int order = 0; order < BONDED_KINDS; order++)
+    for (int order = 0; order < BONDED_KINDS; order++) {
         if (terms->coefficient[order] == NULL)
             TRY_ARRAY(terms->coefficient[order], terms->types[order] + 1);
+        if (terms->term[order] == NULL)
+            TRY_ARRAY(terms->term[order], reading->structure->terms[order].count);
+    }
     return STATUS_OK;
+}
+
+/// Labels begin with letters as names of sections do, but in these there are no numbers.
+static bool has_number(const struct words *words) {
+    double number;
+    for (int k = 0; k < words->count && k < MAX_WORDS; k++)
+        if (mf_words_number(&words->word[k], &number))
+            return true;
+    return false;
 }
 
 static enum status read_line(struct reading *reading, const char *line) {
@@ -198,14 +201,15 @@ static enum status read_line(struct reading *reading, const char *line) {
     split(line, &words);
     if (words.count == 0)
         return STATUS_OK;
-    if (isalpha((unsigned char)words.word[0].begin[0])) {
+    if (isalpha((unsigned char)words.word[0].begin[0]) &&
+        !(reading->section && has_number(&words))) {
         TRY(make_coefficients(reading)); // the header is over
         return begin_section(reading, line, &words);
     }
     if (reading->section == NULL)
         return read_header(reading, &words);
     if (reading->section->section == TERMS)
-        return add_term(reading, &words);
+        return add_term(reading);
     return reading->section->section == COEFFICIENTS ? add_coefficient(reading, &words) : STATUS_OK;
 }
 

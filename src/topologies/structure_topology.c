@@ -3,7 +3,7 @@
 
 #include "base/memory.h"
 #include "topologies/lammps_kinds.h"
-#include "trajectory/trajectory.h"
+#include "topologies/lammps_topology.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -12,7 +12,18 @@
 
 bool mf_structure_topology_is(const char *file) {
     const char *const end = strrchr(file, '.');
-    return end && (strcasecmp(end, ".psf") == 0 || strcasecmp(end, ".gsd") == 0);
+    const char *const slash = strrchr(file, '/'), *const name = slash ? slash + 1 : file;
+    return mf_lammps_topology_is(file) || strncmp(name, "molecule.", 9) == 0 ||
+           (end && (strcasecmp(end, ".psf") == 0 || strcasecmp(end, ".gsd") == 0 ||
+                    strcasecmp(end, ".mol") == 0));
+}
+
+enum status mf_structure_topology_open(struct trajectory *trajectory, const char *file,
+                                       const char *units) {
+    const struct trajectory_options own = {.units = NULL}, told = {.units = units ? units : "lj"};
+    return mf_trajectory_open(trajectory, file, &own) == STATUS_OK
+               ? STATUS_OK
+               : mf_trajectory_open(trajectory, file, &told);
 }
 
 struct reading {
@@ -137,10 +148,9 @@ static enum status check_kinds(struct reading *reading, const struct composition
 enum status mf_structure_topology_read(struct molecules *molecules, struct composition *types,
                                        const char *file) {
     enum status status = STATUS_OK;
-    const struct trajectory_options options = {.units = "nm-ps"}; // of what is not used
     struct trajectory trajectory;
     struct reading reading = {.molecules = molecules, .file = file};
-    TRY(mf_trajectory_open(&trajectory, file, &options));
+    TRY(mf_structure_topology_open(&trajectory, file, NULL)); // lengths are not used
     reading.structure = &trajectory.structure;
     for (int order = 0; order < STRUCTURE_TERM_KINDS; order++)
         CHECK(list_terms(&reading, order));

@@ -147,12 +147,14 @@ static size_t read_tight(const char *line, size_t decimals, double *values, size
 }
 
 /// Three numbers, or nine: the diagonal, then a_y a_z b_x b_z c_x c_y. They have as many decimals
-/// as positions, but five at least.
+/// as positions, but five at least. A fourth alone, which somebody has left there, GROMACS and
+/// VOTCA do not read.
 static enum status read_box(struct trajectory_frame *frame, const char *line, size_t width) {
     enum { FEWEST_DECIMALS = 5 };
     const size_t decimals =
         width > NAME_WIDTH + FEWEST_DECIMALS ? width - NAME_WIDTH : FEWEST_DECIMALS;
     size_t count = mf_words_count(line);
+    count = count == 4 ? 3 : count;
     const char *rest = line;
     double v[9] = {0};
     if ((count != 3 && count != 9) || !mf_words_numbers(&rest, v, count))

@@ -70,7 +70,7 @@ static enum status take_box(struct trajectory *trajectory, uint64_t frame, struc
     raw->size = 0;
     TRY(mf_gsd_chunks_take_if(trajectory, frame, BOX, 6, raw, &there));
     for (size_t k = 0; k < 6; k++)
-        box[k] = there ? binary_float(raw->data + 4 * k, false) : k < 3;
+        box[k] = there ? binary_double(raw->data + 8 * k, false) : k < 3;
     return STATUS_OK;
 }
 
@@ -132,7 +132,7 @@ static enum status describe_masses(struct trajectory *trajectory, struct bytes *
     structure->has_masses = true;
     for (size_t k = 0; k < structure->atoms; k++)
         structure->atom[k].mass =
-            trajectory->scale.mass * (there ? binary_float(raw->data + 4 * k, false) : 1);
+            trajectory->scale.mass * (there ? binary_double(raw->data + 8 * k, false) : 1);
     return STATUS_OK;
 }
 
@@ -231,7 +231,7 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
 }
 
 static enum status decode(const struct trajectory *trajectory, struct trajectory_frame *frame) {
-    const size_t atoms = trajectory->structure.atoms, bytes = 12 * atoms;
+    const size_t atoms = trajectory->structure.atoms, bytes = 24 * atoms;
     const struct trajectory_scale *const scale = &trajectory->scale;
     const unsigned char *const position = frame->raw.data + sizeof(struct header);
     struct header header;
@@ -247,13 +247,13 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     mf_frame_set_box(frame, box);
     TRY(mf_frame_reserve(frame, atoms, header.has_velocities));
     for (size_t k = 0; k < 3 * atoms; k++) {
-        const size_t at = 4 * k;
-        frame->position[k / 3][k % 3] = x * binary_float(position + at, false);
+        const size_t at = 8 * k;
+        frame->position[k / 3][k % 3] = x * binary_double(position + at, false);
         for (size_t i = 0; header.has_images && i < 3; i++)
             frame->position[k / 3][k % 3] +=
                 frame->box[i][k % 3] * binary_int(image + 12 * (k / 3) + 4 * i, false);
         if (header.has_velocities)
-            frame->velocity[k / 3][k % 3] = scale->speed * binary_float(velocity + at, false);
+            frame->velocity[k / 3][k % 3] = scale->speed * binary_double(velocity + at, false);
         if (!isfinite(frame->position[k / 3][k % 3]) ||
             (header.has_velocities && !isfinite(frame->velocity[k / 3][k % 3])))
             return mf_status_fail(STATUS_BAD_INPUT,

@@ -113,8 +113,7 @@ static enum status read_terms(const struct trajectory_frame *frame, const char *
         for (; k < numbers && mf_words_next(&rest, &word); k++) {
             if (!mf_words_integer(&word, &atom) || atom < 1 || (uint64_t)atom > atoms)
                 return mf_frame_fail_line(frame, line, "expected an atom from 1 to %zu, not %.*s",
-                                          atoms, (int)(word.length < 40 ? word.length : 40),
-                                          word.begin);
+                                          atoms, words_shown(&word), word.begin);
             term[k] = (uint32_t)(atom - 1);
         }
         rest = mf_frame_next_line(frame, line);

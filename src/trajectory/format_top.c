@@ -121,6 +121,7 @@ static enum status add_atom(struct reading *reading, const struct gromacs_line *
                                "latter of at most %d letters",
                                STRUCTURE_NAME - 1);
     atom->mass = mass_of(reading, &word[1]);
+    mf_words_copy(&word[1], atom->type_name, STRUCTURE_NAME); // one that is longer no bead can have
     if (words > 7 && !mf_words_number(&word[7], &atom->mass))
         return mf_gromacs_fail(line, "expected a mass, not %.*s", (int)word[7].length,
                                word[7].begin);

@@ -2,11 +2,17 @@
 //
 // XYZ, plain and extended (ASE, OVITO, QUIP, LAMMPS and our own): the number of atoms, a comment, a
 // line for each atom; one frame after the other.
+#include "trajectory/elements.h"
 #include "trajectory/trajectory.h"
 #include "trajectory/xyz_comment.h"
 
 #include <math.h>
 #include <string.h>
+
+/// ASE (ase.io.extxyz) writes momenta in place of velocities, whatever the units of the file, in
+/// sqrt(u eV), and masses only where they are not those of the elements: a speed of sqrt(eV/u) is
+/// sqrt(1.602176634e-19 J / 1.66053906892e-27 kg) [nm/ps].
+static const double ase_speed = 9.822694743;
 
 static bool recognise(const unsigned char *begin, size_t size) {
     char line[SOURCE_PEEK];
@@ -61,7 +67,8 @@ static enum status split(const struct xyz_comment *comment, const struct traject
             return mf_frame_fail_line(frame, line, "%d columns, expected %zu", k, comment->columns);
         for (int c = 0; c < XYZ_COLUMNS; c++) {
             const int place = k - comment->column[c];
-            const int width = c == XYZ_POSITION || c == XYZ_VELOCITY ? 3 : 1;
+            const bool vector = c == XYZ_POSITION || c == XYZ_VELOCITY || c == XYZ_MOMENTUM;
+            const int width = vector ? 3 : 1;
             if (comment->column[c] >= 0 && place >= 0 && place < width)
                 known[c][place] = word;
         }
@@ -81,6 +88,8 @@ static enum status describe_atom(const struct xyz_comment *comment,
     if (column[XYZ_MASS] >= 0 && !mf_words_number(known[XYZ_MASS], &atom->mass))
         return mf_frame_fail_line(first, line, "expected a number for the mass");
     atom->mass *= mass_unit;
+    if (column[XYZ_MASS] < 0 && column[XYZ_MOMENTUM] >= 0)
+        atom->mass = mf_elements_mass(atom->name);
     if ((column[XYZ_ID] >= 0 && !mf_words_integer(known[XYZ_ID], &atom->id)) ||
         (column[XYZ_MOLECULE] >= 0 && !mf_words_integer(known[XYZ_MOLECULE], &atom->molecule)))
         return mf_frame_fail_line(first, line, "expected integers for id and molecule");
@@ -105,11 +114,13 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     if (mf_words_next(&rest, &word) && mf_words_integer(&word, &atoms))
         TRY(mf_structure_init(structure, (size_t)atoms));
     structure->has_names = comment.column[XYZ_NAME] >= 0;
-    structure->has_masses = comment.column[XYZ_MASS] >= 0;
+    structure->has_masses = comment.column[XYZ_MASS] >= 0 || comment.column[XYZ_MOMENTUM] >= 0;
     structure->has_ids = comment.column[XYZ_ID] >= 0;
     structure->has_molecules = comment.column[XYZ_MOLECULE] >= 0;
     for (size_t k = 0; k < structure->atoms; k++, line = mf_frame_next_line(first, line))
         TRY(describe_atom(&comment, first, line, trajectory->scale.mass, &structure->atom[k]));
+    for (size_t k = 0; k < structure->atoms; k++) // of what is no element only the map may know it
+        structure->has_masses = structure->has_masses && isfinite(structure->atom[k].mass);
     return structure->has_ids ? mf_trajectory_sort(trajectory, first) : STATUS_OK;
 }
 
@@ -134,10 +145,22 @@ static enum status read_atom(const struct trajectory *trajectory, struct traject
     }
     if (!read_vector(known[XYZ_POSITION], trajectory->scale.length, frame->position[atom]))
         return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
+    const bool momenta = comment->column[XYZ_VELOCITY] < 0;
+    const double speed =
+        momenta ? ase_speed / trajectory->structure.atom[atom].mass : trajectory->scale.speed;
     if (frame->has_velocities &&
-        !read_vector(known[XYZ_VELOCITY], trajectory->scale.speed, frame->velocity[atom]))
+        !read_vector(known[momenta ? XYZ_MOMENTUM : XYZ_VELOCITY], speed, frame->velocity[atom]))
         return mf_frame_fail_line(frame, line, "a velocity is not a finite number");
     return STATUS_OK;
+}
+
+/// Momenta are velocities where masses are known, and above 0.
+static bool has_velocities(const struct trajectory *trajectory, const struct xyz_comment *comment) {
+    const struct structure *const structure = &trajectory->structure;
+    bool known = comment->column[XYZ_MOMENTUM] >= 0 && structure->has_masses;
+    for (size_t k = 0; k < structure->atoms && known; k++)
+        known = structure->atom[k].mass > 0;
+    return known || comment->column[XYZ_VELOCITY] >= 0;
 }
 
 static enum status decode(const struct trajectory *trajectory, struct trajectory_frame *frame) {
@@ -151,7 +174,7 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
         frame->periodic[d] = frame->has_box && comment.periodic[d];
     frame->time = comment.time * trajectory->scale.time;
     frame->step = comment.step;
-    TRY(mf_frame_reserve(frame, trajectory->structure.atoms, comment.column[XYZ_VELOCITY] >= 0));
+    TRY(mf_frame_reserve(frame, trajectory->structure.atoms, has_velocities(trajectory, &comment)));
     TRY(mf_trajectory_begin_atoms(trajectory, frame));
     for (size_t k = 0; k < frame->atoms; k++, line = mf_frame_next_line(frame, line))
         TRY(read_atom(trajectory, frame, &comment, line, k));
@@ -164,7 +187,7 @@ const struct trajectory_format mf_format_xyz = {
     .name = "xyz",
     .extensions = extensions,
     .summary = "XYZ, plain or extended: Lattice, pbc, Time, Units, and of Properties pos, velo, "
-               "mass, id, mol",
+               "momenta, mass, id, mol",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
     .fetch = fetch,

@@ -137,6 +137,8 @@ static enum status direct(struct reading *reading, struct gromacs_line *line, in
         return STATUS_OK;
     if (is(name, length, "include"))
         return include(reading, line, rest);
+    if (is(name, length, "error"))
+        return mf_gromacs_fail(line, "#error %.300s", rest);
     if (is(name, length, "define"))
         return define(reading, line, rest);
     if (!is(name, length, "undef"))

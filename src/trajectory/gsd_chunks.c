@@ -8,32 +8,37 @@
 
 enum { LARGEST_VERSION = 2 };
 
+/// What a chunk holds. Programs and their versions write it in numbers of several widths and signs
+/// (HOOMD-blue 7 floats of 8 bytes, names as bytes with or without a sign); we keep one of each.
+enum holds { TEXT, WHOLE, STEPS, REAL };
+static const size_t kept_bytes[] = {[TEXT] = 1, [WHOLE] = 4, [STEPS] = 8, [REAL] = 8};
+
 /// `columns` 0: any number of them.
 static const struct {
     const char *name;
-    int type;
-    size_t bytes, columns;
+    enum holds holds;
+    size_t columns;
 } chunks[CHUNKS] = {
-    [STEP] = {"configuration/step", GSD_UINT64, 8, 1},
-    [DIMENSIONS] = {"configuration/dimensions", GSD_UINT8, 1, 1},
-    [BOX] = {"configuration/box", GSD_FLOAT, 4, 1},
-    [COUNT] = {"particles/N", GSD_UINT32, 4, 1},
-    [TYPES] = {"particles/types", GSD_INT8, 1, 0},
-    [TYPE] = {"particles/typeid", GSD_UINT32, 4, 1},
-    [MASS] = {"particles/mass", GSD_FLOAT, 4, 1},
-    [POSITION] = {"particles/position", GSD_FLOAT, 4, 3},
-    [VELOCITY] = {"particles/velocity", GSD_FLOAT, 4, 3},
-    [IMAGE] = {"particles/image", GSD_INT32, 4, 3},
-    [BOND] = {"bonds/group", GSD_UINT32, 4, 2},
-    [ANGLE] = {"angles/group", GSD_UINT32, 4, 3},
-    [DIHEDRAL] = {"dihedrals/group", GSD_UINT32, 4, 4},
-    [BOND_TYPE] = {"bonds/typeid", GSD_UINT32, 4, 1},
-    [ANGLE_TYPE] = {"angles/typeid", GSD_UINT32, 4, 1},
-    [DIHEDRAL_TYPE] = {"dihedrals/typeid", GSD_UINT32, 4, 1},
-    [BOND_TYPES] = {"bonds/types", GSD_INT8, 1, 0},
-    [ANGLE_TYPES] = {"angles/types", GSD_INT8, 1, 0},
-    [DIHEDRAL_TYPES] = {"dihedrals/types", GSD_INT8, 1, 0},
-    [CONSTRAINT] = {"constraints/group", GSD_UINT32, 4, 2},
+    [STEP] = {"configuration/step", STEPS, 1},
+    [DIMENSIONS] = {"configuration/dimensions", WHOLE, 1},
+    [BOX] = {"configuration/box", REAL, 1},
+    [COUNT] = {"particles/N", WHOLE, 1},
+    [TYPES] = {"particles/types", TEXT, 0},
+    [TYPE] = {"particles/typeid", WHOLE, 1},
+    [MASS] = {"particles/mass", REAL, 1},
+    [POSITION] = {"particles/position", REAL, 3},
+    [VELOCITY] = {"particles/velocity", REAL, 3},
+    [IMAGE] = {"particles/image", WHOLE, 3},
+    [BOND] = {"bonds/group", WHOLE, 2},
+    [ANGLE] = {"angles/group", WHOLE, 3},
+    [DIHEDRAL] = {"dihedrals/group", WHOLE, 4},
+    [BOND_TYPE] = {"bonds/typeid", WHOLE, 1},
+    [ANGLE_TYPE] = {"angles/typeid", WHOLE, 1},
+    [DIHEDRAL_TYPE] = {"dihedrals/typeid", WHOLE, 1},
+    [BOND_TYPES] = {"bonds/types", TEXT, 0},
+    [ANGLE_TYPES] = {"angles/types", TEXT, 0},
+    [DIHEDRAL_TYPES] = {"dihedrals/types", TEXT, 0},
+    [CONSTRAINT] = {"constraints/group", WHOLE, 2},
 };
 
 // The file ----------------------------------------------------------------------------------------
@@ -151,10 +156,64 @@ const unsigned char *mf_gsd_chunks_find(const struct gsd *gsd, uint64_t frame,
     return NULL;
 }
 
-/// Characters are bytes, and what writes indices says uint32 or int32.
-static bool fits(int type, int wanted) {
-    return type == wanted || (type == GSD_CHARACTER && wanted == GSD_INT8) ||
-           (type == GSD_INT32 && wanted == GSD_UINT32);
+/// Bytes of a number of each type of the file layer, and whether it can be what a chunk holds.
+static size_t stored_bytes(enum gsd_type type, enum holds holds) {
+    static const struct {
+        unsigned char bytes;
+        bool is_real;
+    } types[] = {
+        [GSD_UINT8] = {1, false},  [GSD_UINT16] = {2, false},    [GSD_UINT32] = {4, false},
+        [GSD_UINT64] = {8, false}, [GSD_INT8] = {1, false},      [GSD_INT16] = {2, false},
+        [GSD_INT32] = {4, false},  [GSD_INT64] = {8, false},     [GSD_FLOAT] = {4, true},
+        [GSD_DOUBLE] = {8, true},  [GSD_CHARACTER] = {1, false},
+    };
+    if (type >= sizeof types / sizeof *types || types[type].is_real != (holds == REAL) ||
+        (holds == TEXT && types[type].bytes != 1))
+        return 0;
+    return types[type].bytes;
+}
+
+static int64_t stored_integer(const unsigned char *at, enum gsd_type type, size_t bytes) {
+    uint64_t bits = 0;
+    for (size_t k = bytes; k-- > 0;)
+        bits = bits << 8 | at[k];
+    const uint64_t sign = type >= GSD_INT8 && bytes < 8 ? (uint64_t)1 << (8 * bytes - 1) : 0;
+    return (int64_t)((bits ^ sign) - sign);
+}
+
+/// One number as it is kept. @return whether it fits
+static bool keep_number(unsigned char *to, const unsigned char *from, enum gsd_type type,
+                        size_t bytes, enum holds holds) {
+    if (holds == REAL) {
+        const double real = binary_real(from, 0, bytes, false);
+        memcpy(to, &real, sizeof real);
+        return true;
+    }
+    const int64_t number = stored_integer(from, type, bytes);
+    for (size_t k = 0; k < kept_bytes[holds]; k++)
+        to[k] = (unsigned char)((uint64_t)number >> 8 * k & 0xFF);
+    return holds == STEPS || (number >= INT32_MIN && number <= UINT32_MAX);
+}
+
+/// The numbers from byte `from` of `raw` on, where they stand, as they are kept.
+static enum status keep(struct source *source, enum gsd_chunk chunk, enum gsd_type type,
+                        size_t bytes, struct bytes *raw, size_t from) {
+    const enum holds holds = chunks[chunk].holds;
+    const size_t count = (raw->size - from) / bytes, kept = kept_bytes[holds];
+    bool fit = true;
+    if (kept == bytes && holds != REAL)
+        return STATUS_OK;
+    if (kept > bytes)
+        TRY(mf_source_capacity(raw, count * (kept - bytes)));
+    unsigned char *const at = raw->data + from;
+    for (size_t n = 0; n < count; n++) { // what grows is moved from its end on
+        const size_t k = kept > bytes ? count - 1 - n : n;
+        fit = keep_number(at + k * kept, at + k * bytes, type, bytes, holds) && fit;
+    }
+    raw->size = from + count * kept;
+    return fit ? STATUS_OK
+               : mf_source_fail_byte(source, "\"%s\" has a number beyond 32 bits",
+                                     chunks[chunk].name);
 }
 
 enum status mf_gsd_chunks_take(struct trajectory *trajectory, uint64_t frame, enum gsd_chunk chunk,
@@ -162,13 +221,15 @@ enum status mf_gsd_chunks_take(struct trajectory *trajectory, uint64_t frame, en
                                uint32_t *columns_found) {
     const struct gsd *const gsd = trajectory->state;
     struct source *const source = &trajectory->source;
+    const size_t from = raw->size;
     const unsigned char *at = mf_gsd_chunks_find(gsd, frame, chunk);
     at = at ? at : mf_gsd_chunks_find(gsd, 0, chunk);
     *rows_found = at ? binary_long(at + 8, false) : 0;
     if (*rows_found == 0)
         return STATUS_OK;
     const uint32_t columns = binary_word(at + 24, false);
-    if (!fits(at[30], chunks[chunk].type) || (rows > 0 && *rows_found != rows) || columns == 0 ||
+    const size_t bytes = stored_bytes(at[30], chunks[chunk].holds);
+    if (bytes == 0 || (rows > 0 && *rows_found != rows) || columns == 0 ||
         (chunks[chunk].columns > 0 && columns != chunks[chunk].columns))
         return mf_source_fail_byte(source,
                                    "\"%s\" has %llu rows of %lu numbers of type %d, which it "
@@ -176,8 +237,8 @@ enum status mf_gsd_chunks_take(struct trajectory *trajectory, uint64_t frame, en
                                    chunks[chunk].name, (unsigned long long)*rows_found,
                                    (unsigned long)columns, at[30]);
     *columns_found = columns;
-    return take_at(source, raw, binary_long(at + 16, false), *rows_found,
-                   (uint64_t)columns * chunks[chunk].bytes);
+    TRY(take_at(source, raw, binary_long(at + 16, false), *rows_found, (uint64_t)columns * bytes));
+    return keep(source, chunk, at[30], bytes, raw, from);
 }
 
 enum status mf_gsd_chunks_take_if(struct trajectory *trajectory, uint64_t frame,

@@ -49,7 +49,8 @@ const char *mf_gsd_chunks_name(enum gsd_chunk chunk);
 const unsigned char *mf_gsd_chunks_find(const struct gsd *gsd, uint64_t frame,
                                         enum gsd_chunk chunk);
 
-/// Append the numbers of a chunk, or of that of frame 0, of `rows` rows, 0: any.
+/// Append the numbers of a chunk, or of that of frame 0, of `rows` rows, 0: any. However the file
+/// has them, lengths, masses and velocities become doubles, steps 8 bytes and other integers 4.
 /// @param[out] rows_found  0: neither frame has it
 enum status mf_gsd_chunks_take(struct trajectory *trajectory, uint64_t frame, enum gsd_chunk chunk,
                                uint64_t rows, struct bytes *raw, uint64_t *rows_found,

@@ -2,6 +2,7 @@
 #include "trajectory/lammps_data.h"
 
 #include <ctype.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { ATOMIC, CHARGE, MOLECULAR, FULL, STYLES };
@@ -12,6 +13,8 @@ static const struct lammps_style styles[STYLES] = {
     [MOLECULAR] = {"molecular", 1, 2, -1, 3},
     [FULL] = {"full", 1, 2, 3, 4},
 };
+
+static const char *const kinds[STRUCTURE_TERM_KINDS] = {"bond", "angle", "dihedral"};
 
 size_t mf_lammps_data_split(const char *line, struct word word[LAMMPS_DATA_WORDS]) {
     struct word next;
@@ -52,10 +55,18 @@ static void read_title(struct lammps_data *data, const char *line) {
         data->step = -1;
 }
 
-/// "0 10 xlo xhi" and its like.
+/// "0 10 xlo xhi" and its like, or, of a general triclinic box, "10 0 1 avec".
 static bool read_bounds(struct lammps_data *data, const struct word *word, size_t count, int d) {
     static const char *const low[] = {"xlo", "ylo", "zlo"};
+    static const char *const vector[] = {"avec", "bvec", "cvec"};
     double begin, end;
+    if (is_word(word, count, 3, vector[d])) {
+        data->is_text |= d == 0;
+        for (int k = 0; k < 3; k++)
+            if (!mf_words_number(&word[k], &data->box[d][k]))
+                return false;
+        return true;
+    }
     if (!is_word(word, count, 2, low[d]))
         return true;
     data->is_text |= d == 0;
@@ -63,6 +74,22 @@ static bool read_bounds(struct lammps_data *data, const struct word *word, size_
         return false;
     data->origin[d] = begin;
     data->box[d][d] = end - begin;
+    return true;
+}
+
+/// "12 bonds" and "2 bond types" of one of the kinds of terms.
+static bool read_counts(const struct word *word, size_t count, const char *kind,
+                        struct lammps_data_terms *terms) {
+    char plural[16];
+    int64_t number = 0;
+    snprintf(plural, sizeof plural, "%ss", kind);
+    const bool types = is_word(word, count, 1, kind) && is_word(word, count, 2, "types");
+    if (!types && !is_word(word, count, 1, plural))
+        return true;
+    if (!mf_words_integer(&word[0], &number) || number < 0 ||
+        (types && number > LAMMPS_DATA_MAX_TYPES))
+        return false;
+    *(types ? &terms->types : &terms->count) = (size_t)number;
     return true;
 }
 
@@ -85,29 +112,53 @@ static enum status read_header_line(struct lammps_data *data, const struct traje
     }
     for (int d = 0; d < 3 && good; d++)
         good = read_bounds(data, word, count, d);
+    for (int kind = 0; kind < STRUCTURE_TERM_KINDS && good; kind++)
+        good = read_counts(word, count, kinds[kind], &data->terms[kind]);
     return good ? STATUS_OK : mf_frame_fail_line(frame, line, "expected numbers in this line");
+}
+
+/// Whether a heading is a name in lower case, with its first letter as a capital, and more words.
+static bool is_heading(const struct word *word, size_t count, const char *name, const char *more) {
+    char text[32];
+    snprintf(text, sizeof text, "%c%s%s", toupper((unsigned char)name[0]), name + 1, more);
+    return strncmp(word[0].begin, text, strlen(text)) == 0 &&
+           word[0].begin + strlen(text) == word[count - 1].begin + word[count - 1].length;
+}
+
+/// Where the first line of a section is kept; NULL: nothing is read of it.
+static const char **find_section(struct lammps_data *data, const struct word *word, size_t count) {
+    for (int k = 0; k < STRUCTURE_TERM_KINDS; k++) {
+        if (is_heading(word, count, kinds[k], "s"))
+            return &data->terms[k].first;
+        if (is_heading(word, count, kinds[k], " Type Labels"))
+            return &data->terms[k].labels;
+    }
+    if (is_heading(word, count, "atom", " Type Labels"))
+        return &data->labels;
+    return is_heading(word, count, "masses", "")       ? &data->masses
+           : is_heading(word, count, "velocities", "") ? &data->velocities
+           : is_heading(word, count, "atoms", "")      ? &data->atom
+           : is_heading(word, count, "types", "")      ? &data->kinds
+                                                       : NULL;
 }
 
 /// Remember where a section begins: at the first line that is not empty.
 static void read_heading(struct lammps_data *data, const struct trajectory_frame *frame,
                          const char *line) {
+    enum { LONGEST = 3 };
     struct word word[LAMMPS_DATA_WORDS];
     const size_t count = mf_lammps_data_split(line, word);
-    const char *first = line, *comment = strchr(line, '#');
-    do
-        first = mf_frame_next_line(frame, first);
-    while (first && mf_words_count(first) == 0);
-    if (count != 1)
+    const char *comment = strchr(line, '#');
+    const char **const section =
+        count > 0 && count <= LONGEST ? find_section(data, word, count) : NULL;
+    if (section == NULL)
         return;
-    if (mf_words_same(&word[0], "Masses"))
-        data->masses = first;
-    else if (mf_words_same(&word[0], "Velocities"))
-        data->velocities = first;
-    else if (mf_words_same(&word[0], "Atoms")) {
-        data->atom = first;
-        if (comment++ && mf_words_next(&comment, &word[0]))
-            mf_words_copy(&word[0], data->style, sizeof data->style);
-    }
+    *section = line;
+    do
+        *section = mf_frame_next_line(frame, *section);
+    while (*section && mf_words_count(*section) == 0);
+    if (section == &data->atom && comment++ && mf_words_next(&comment, &word[0]))
+        mf_words_copy(&word[0], data->style, sizeof data->style);
 }
 
 /// The header ends with the first line that begins with a letter.
@@ -129,14 +180,45 @@ enum status mf_lammps_data_read(struct lammps_data *data, const struct trajector
     return STATUS_OK;
 }
 
-/// Whether each of the atoms has a whole number as its third word: a type then, and no charge.
-static bool is_third_whole(const struct lammps_data *data, const struct trajectory_frame *frame) {
+enum status mf_lammps_data_names(const struct trajectory_frame *frame, const char *labels,
+                                 size_t types, char (*name)[STRUCTURE_NAME]) {
+    struct word word[LAMMPS_DATA_WORDS];
+    int64_t type;
+    for (size_t k = 1; k <= types; k++)
+        snprintf(name[k], STRUCTURE_NAME, "%u", (unsigned)k);
+    for (size_t k = 0; labels && k < types; k++, labels = mf_frame_next_line(frame, labels))
+        if (mf_lammps_data_split(labels, word) != 2 || !mf_words_integer(&word[0], &type) ||
+            type < 1 || (size_t)type > types ||
+            !mf_words_copy(&word[1], name[type], STRUCTURE_NAME))
+            return mf_frame_fail_line(frame, labels,
+                                      "expected a type from 1 to %zu and its label, of up to %d "
+                                      "characters",
+                                      types, STRUCTURE_NAME - 1);
+    return STATUS_OK;
+}
+
+size_t mf_lammps_data_type(const struct word *word, size_t types,
+                           const char (*name)[STRUCTURE_NAME]) {
+    int64_t number;
+    if (mf_words_integer(word, &number))
+        return number >= 1 && (uint64_t)number <= types ? (size_t)number : 0;
+    for (size_t k = 1; k <= types; k++)
+        if (mf_words_same(word, name[k]))
+            return k;
+    return 0;
+}
+
+/// Whether each of the atoms has a type as its third word, a whole number or a label, and no
+/// charge.
+static bool is_third_type(const struct lammps_data *data, const struct trajectory_frame *frame) {
     struct word word[LAMMPS_DATA_WORDS];
     int64_t number;
+    double charge;
     const char *line = data->atom;
     for (size_t k = 0; line && k < data->atoms; k++, line = mf_frame_next_line(frame, line))
-        if (mf_lammps_data_split(line, word) < 3 || !mf_words_integer(&word[2], &number) ||
-            number < 1 || (size_t)number > data->types)
+        if (mf_lammps_data_split(line, word) < 3 ||
+            (mf_words_integer(&word[2], &number) ? number < 1 || (size_t)number > data->types
+                                                 : mf_words_number(&word[2], &charge)))
             return false;
     return true;
 }
@@ -175,7 +257,7 @@ enum status mf_lammps_data_style(const struct lammps_data *data,
     if (count == 5 || count == 8)
         *style = &styles[ATOMIC];
     else if (count == 6 || count == 9)
-        *style = &styles[is_third_whole(data, frame) ? MOLECULAR : CHARGE];
+        *style = &styles[is_third_type(data, frame) ? MOLECULAR : CHARGE];
     else if (count == 7 || count == 10)
         *style = &styles[FULL];
     else

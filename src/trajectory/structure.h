@@ -16,6 +16,7 @@ struct structure_atom {
     char name[STRUCTURE_NAME];         ///< "OW"; else its element or the number of its type
     char residue_name[STRUCTURE_NAME]; ///< "SOL"
     char element[STRUCTURE_NAME];      ///< "O", as the file says it
+    char type_name[STRUCTURE_NAME];    ///< of its type in a topology, where it is called otherwise
     char chain;
     int64_t residue_number; ///< as in the file, where it may begin again
     int64_t id, molecule, type;

@@ -251,12 +251,12 @@ static enum status check_box(const struct trajectory_frame *frame) {
     return STATUS_OK;
 }
 
-/// The box that was told is for frames without their own.
+/// The box that was told is for frames without one that is periodic along all of its vectors.
 static enum status take_told_box(const struct trajectory *trajectory,
                                  struct trajectory_frame *frame) {
     const double box[3][3] = {
         {trajectory->box[0], 0, 0}, {0, trajectory->box[1], 0}, {0, 0, trajectory->box[2]}};
-    if (frame->has_box)
+    if (frame->periodic[0] && frame->periodic[1] && frame->periodic[2])
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu has a box of its own: leave out --box", frame->file,
                               frame->number);

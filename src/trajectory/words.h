@@ -12,6 +12,12 @@ struct word {
     size_t length;
 };
 
+/// How many of its characters a message shows.
+static inline int words_shown(const struct word *word) {
+    enum { MOST = 40 };
+    return word->length < MOST ? (int)word->length : MOST;
+}
+
 /// Take the next word, blanks and tabs being between them; false if there is none.
 bool mf_words_next(const char **line, struct word *word);
 

@@ -12,21 +12,14 @@ static const struct {
     enum xyz_column column;
     int64_t width;
 } known_columns[] = {
-    {"species", XYZ_NAME, 1},
-    {"element", XYZ_NAME, 1},
-    {"type", XYZ_NAME, 1},
-    {"pos", XYZ_POSITION, 3},
-    {"position", XYZ_POSITION, 3},
-    {"positions", XYZ_POSITION, 3},
-    {"velo", XYZ_VELOCITY, 3},
-    {"vel", XYZ_VELOCITY, 3},
-    {"velocity", XYZ_VELOCITY, 3},
-    {"velocities", XYZ_VELOCITY, 3},
-    {"mass", XYZ_MASS, 1},
-    {"masses", XYZ_MASS, 1},
-    {"id", XYZ_ID, 1},
-    {"mol", XYZ_MOLECULE, 1},
-    {"molecule", XYZ_MOLECULE, 1},
+    {"species", XYZ_NAME, 1},      {"element", XYZ_NAME, 1},
+    {"type", XYZ_NAME, 1},         {"pos", XYZ_POSITION, 3},
+    {"position", XYZ_POSITION, 3}, {"positions", XYZ_POSITION, 3},
+    {"velo", XYZ_VELOCITY, 3},     {"vel", XYZ_VELOCITY, 3},
+    {"velocity", XYZ_VELOCITY, 3}, {"velocities", XYZ_VELOCITY, 3},
+    {"momenta", XYZ_MOMENTUM, 3},  {"mass", XYZ_MASS, 1},
+    {"masses", XYZ_MASS, 1},       {"id", XYZ_ID, 1},
+    {"mol", XYZ_MOLECULE, 1},      {"molecule", XYZ_MOLECULE, 1},
     {"molid", XYZ_MOLECULE, 1},
 };
 
@@ -132,7 +125,7 @@ const char *mf_xyz_comment_read(struct xyz_comment *comment, const char *line) {
     *comment = (struct xyz_comment){.periodic = {true, true, true},
                                     .time = NAN,
                                     .step = -1,
-                                    .column = {0, 1, -1, -1, -1, -1},
+                                    .column = {0, 1, -1, -1, -1, -1, -1},
                                     .columns = 4};
     while (next_pair(&line, &key, &value)) {
         const char *const fault = read_pair(comment, &key, &value);

@@ -11,6 +11,7 @@ enum xyz_column {
     XYZ_NAME,
     XYZ_POSITION, ///< three columns
     XYZ_VELOCITY, ///< three columns
+    XYZ_MOMENTUM, ///< three columns, in the unit of ASE
     XYZ_MASS,
     XYZ_ID,
     XYZ_MOLECULE,

@@ -7,6 +7,7 @@
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"
+#include "scene/molecules_listing.h"
 #include "work/measure_output.h"
 #include "work/measure_print.h"
 
@@ -22,10 +23,12 @@ struct run {
     struct trajectory structure;
     struct scene_molecules molecules;
     struct composition types; ///< of their beads
+    struct molecules_listing listing;
     struct mapping mapping;
     struct frames frames;
     struct measured measured;
     struct beads_file beads;
+    double height; ///< of the least box, where the first does not do for the range [nm]; else 0
 };
 
 /// Every file that is read must be spared.
@@ -60,13 +63,18 @@ static void print_lines(struct progress *progress, const struct bytes *notes) {
     }
 }
 
+/// The atoms of the trajectory, as the molecules' file knows them if it lists them.
+static const struct structure *atoms_of(const struct run *run) {
+    return run->listing.repeats > 0 ? &run->listing.structure : &run->structure.structure;
+}
+
 /// Beads are atoms whose types the molecules' file names.
 static enum status take_atoms(struct run *run) {
     const char *types[COMPOSITION_MAX_TYPES];
     for (int type = 0; type < run->types.types; type++)
         types[type] = run->types.name[type];
-    return mf_mapping_init_atoms(&run->mapping, &run->structure.structure, types,
-                                 (size_t)run->types.types, run->request->molecules);
+    return mf_mapping_init_atoms(&run->mapping, atoms_of(run), types, (size_t)run->types.types,
+                                 run->request->molecules);
 }
 
 /// Beads are what a map makes of atoms, or one a residue.
@@ -74,17 +82,28 @@ static enum status map_atoms(struct run *run) {
     struct mapping_plan plan;
     TRY(run->request->map ? mf_mapping_plan_read(&plan, run->request->map)
                           : mf_mapping_plan_default(&plan));
-    const enum status status = mf_mapping_init(&run->mapping, &plan, &run->structure.structure);
+    const enum status status = mf_mapping_init(&run->mapping, &plan, atoms_of(run));
     mf_mapping_plan_clear(&plan);
     return status;
+}
+
+static enum status read_molecules(struct run *run) {
+    const struct measure_request *const request = run->request;
+    if (request->molecules == NULL)
+        return STATUS_OK;
+    mf_molecules_listing_clear(&run->listing);
+    mf_scene_molecules_clear(&run->molecules);
+    TRY(mf_molecules_file_read(&run->molecules, &run->types, request->molecules));
+    return mf_molecules_listing_read(&run->listing, &run->molecules.molecules.topology,
+                                     request->molecules, request->frames.options.units,
+                                     &run->structure.structure, request->map != NULL);
 }
 
 /// What the atoms are, which of them are beads, and what molecules there may be.
 static enum status find_beads(struct run *run) {
     const struct measure_request *const request = run->request;
-    if (request->molecules)
-        TRY(mf_molecules_file_read(&run->molecules, &run->types, request->molecules));
     TRY(mf_trajectory_open(&run->structure, structure_file(run), &request->frames.options));
+    TRY(read_molecules(run));
     TRY(request->molecules && !request->map ? take_atoms(run) : map_atoms(run));
     print_lines(&run->progress, &run->mapping.notes);
     return STATUS_OK;
@@ -158,11 +177,33 @@ static void print_density(struct run *run) {
 static enum status begin_measuring(struct run *run) {
     struct measured_plan plan = run->request->measured;
     print_density(run);
+    plan.height = run->height;
     plan.motion.expected = mf_frames_expected(&run->frames, MEASURED_MOTION_FRAMES);
     if (run->request->molecules)
         plan.molecules = (struct measured_molecules_plan){&run->molecules.molecules, &run->types,
                                                           run->request->molecules};
     return mf_measured_begin(&run->measured, &plan, &run->mapping, run->frames.frame);
+}
+
+static enum status read_again(struct run *run, size_t skip);
+
+/// Pipes are read once.
+static bool can_be_read_again(const struct frames *frames) {
+    for (size_t k = 0; k < frames->plan.files; k++)
+        if (frames->source[k].bytes == 0)
+            return false;
+    return true;
+}
+
+/// Ranges were chosen by the first frame, and boxes shrink: begin again with those of the least.
+static enum status shorten_range(struct run *run, double least) {
+    size_t count = 1;
+    while (count > 0) {
+        TRY(mf_frames_next(&run->frames, &count));
+        least = mf_measured_height(run->frames.frame, count, least);
+    }
+    run->height = least;
+    return read_again(run, run->frames.plan.skip);
 }
 
 static enum status read_frames(struct run *run) {
@@ -176,6 +217,10 @@ static enum status read_frames(struct run *run) {
                 print_interval(run, count);
             TRY(begin_measuring(run));
         }
+        const double height = mf_measured_height(run->frames.frame, count, INFINITY);
+        if (!mf_measured_fits(&run->measured, &run->request->measured, height) &&
+            can_be_read_again(&run->frames) && run->height == 0)
+            return shorten_range(run, height);
         TRY(mf_measured_add(&run->measured, run->frames.frame, count));
         TRY(add_beads(run, count));
         report(run);
@@ -201,14 +246,6 @@ static void print_slowest(const struct run *run, const struct frame_features_slo
                  slowest->from, slowest->to);
 }
 
-/// Pipes are read once.
-static bool can_be_read_again(const struct frames *frames) {
-    for (size_t k = 0; k < frames->plan.files; k++)
-        if (frames->source[k].bytes == 0)
-            return false;
-    return true;
-}
-
 static enum status read_again(struct run *run, size_t skip) {
     struct frames_plan plan = run->request->frames;
     plan.skip = skip;
@@ -216,10 +253,7 @@ static enum status read_again(struct run *run, size_t skip) {
     mf_frames_close(&run->frames);
     if (run->request->beads)
         TRY(mf_beads_file_restart(&run->beads));
-    if (run->request->molecules) { // whose types have become those of the beads
-        mf_scene_molecules_clear(&run->molecules);
-        TRY(mf_molecules_file_read(&run->molecules, &run->types, run->request->molecules));
-    }
+    TRY(read_molecules(run)); // whose types have become those of the beads
     TRY(mf_frames_open(&run->frames, &plan, &run->structure.structure, structure_file(run)));
     return read_frames(run);
 }
@@ -243,6 +277,7 @@ static enum status find_equilibrium(struct run *run) {
                       "the first %zu of %zu frames are not in equilibrium (%s) and are left out; "
                       "--begin 0 keeps them",
                       slowest.frames, run->measured.frames, what);
+    run->height = 0;
     return read_again(run, slowest.frames);
 }
 
@@ -333,6 +368,7 @@ enum status mf_measure_run(const struct measure_request *request,
         status = carry_out(&run, options);
     mf_beads_file_clear(&run.beads);
     mf_measured_clear(&run.measured);
+    mf_molecules_listing_clear(&run.listing);
     mf_scene_molecules_clear(&run.molecules);
     mf_frames_close(&run.frames);
     mf_mapping_clear(&run.mapping);

@@ -214,6 +214,31 @@ static void test_our_own_export_is_read_again(void **state) {
     results_assert_same("out", "second", (const char *const[]){"bond_lengths.tsv", NULL});
 }
 
+/// Put `to` in the place of the first `from` of a text of DATA_SIZE bytes.
+static void replace(char *text, const char *from, const char *to) {
+    static char rest[DATA_SIZE];
+    char *const at = strstr(text, from);
+    assert_non_null(at);
+    snprintf(rest, DATA_SIZE, "%s", at + strlen(from));
+    snprintf(at, DATA_SIZE - (size_t)(at - text), "%s%s", to, rest);
+}
+
+/// LAMMPS of 2022 writes labels where it wrote numbers of types (manual, Howto_type_labels).
+static void test_labels_stand_for_numbers_of_types(void **state) {
+    static struct run_program_result result;
+    static char text[DATA_SIZE];
+    read_fixture(text);
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    write_data(text, NULL, NULL);
+    simulate("scene.json", "numbers", &result);
+    replace(text, "\nMasses\n", "\nBond Type Labels\n\n1 A-B\n2 second\n3 c3*\n\nMasses\n");
+    replace(text, "\n1 1.43079 3.5", "\nA-B 1.43079 3.5");
+    replace(text, "\n1 1 14 36\n", "\n1 A-B 14 36\n");
+    write_data(text, NULL, NULL);
+    simulate("scene.json", "labels", &result);
+    results_assert_same("numbers", "labels", (const char *const[]){"thermodynamics.tsv", NULL});
+}
+
 static void test_files_that_cannot_be_are_refused(void **state) {
     static const struct {
         const char *from, *to, *place, *what;
@@ -303,6 +328,7 @@ int main(void) {
         TEST_WITH_LAMMPS(test_all_styles_have_the_energies_of_lammps),
         TEST(test_our_own_export_is_read_again),
         TEST(test_what_is_far_too_long_is_refused),
+        TEST(test_labels_stand_for_numbers_of_types),
         TEST(test_files_that_cannot_be_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

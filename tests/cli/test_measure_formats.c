@@ -61,13 +61,13 @@ static void test_measure_has_the_same_window_when_frames_are_of_other_lengths(vo
 
 /// Of 20 atoms on a line, with a box of the file and one that is told.
 static void test_measure_has_the_box_that_is_told(void **state) {
-    static const char *const names[] = {"boxed.xyz", "bare.xyz"};
-    for (int bare = 0; bare < 2; bare++) {
+    static const char *const names[] = {"boxed.xyz", "bare.xyz", "film.xyz"};
+    static const char *const comment[] = {
+        "Lattice=\"30 0 0 0 30 0 0 0 40\" Properties=species:S:1:pos:R:3", "no box",
+        "Lattice=\"30 0 0 0 30 0 0 0 90\" Properties=species:S:1:pos:R:3 pbc=\"T T F\""};
+    for (int bare = 0; bare < 3; bare++) {
         char text[1 << 12];
-        int length = snprintf(text, sizeof text, "20\n%s\n",
-                              bare ? "no box"
-                                   : "Lattice=\"30 0 0 0 30 0 0 0 40\" "
-                                     "Properties=species:S:1:pos:R:3");
+        int length = snprintf(text, sizeof text, "20\n%s\n", comment[bare]);
         for (int k = 0; k < 20; k++)
             length += snprintf(text + length, sizeof text - (size_t)length, "Ar %g %g %g\n",
                                1.3 * k, 0.7 * k * k, 11.0 * k);
@@ -75,7 +75,11 @@ static void test_measure_has_the_box_that_is_told(void **state) {
     }
     MEASURE("boxed.xyz", "--static", "-o", "boxed", "--quiet");
     MEASURE("bare.xyz", "--static", "--box", "3,3,4", "-o", "bare", "--quiet");
+    MEASURE("film.xyz", "--static", "--box", "3,3,4", "-o", "film", "--quiet");
     results_assert_same("boxed", "bare", (const char *const[]){"rdf.tsv", NULL});
+    results_assert_same("boxed", "film", (const char *const[]){"rdf.tsv", NULL});
+    REFUSED("frame 0 is not periodic along vector c of its box: give a box that is, by --box",
+            "film.xyz", "-o", "none");
     REFUSED("bare.xyz: frame 0 has no box: g(r) needs the volume and its images; give it by --box",
             "bare.xyz", "-o", "none");
     REFUSED("boxed.xyz: frame 0 has a box of its own: leave out --box", "boxed.xyz", "--box", "3",
@@ -121,6 +125,35 @@ static void test_measure_has_the_types_of_the_file(void **state) {
     assert_false(temporary_folder_exists("without/rdf.tsv"));
 }
 
+/// A range that nobody gave goes by the least box, wherever in the file it is: 0.45 of it.
+static void test_measure_has_a_range_by_the_least_box(void **state) {
+    static const double edge[] = {40, 39, 30, 38, 20, 22};
+    char text[1 << 13];
+    int length = 0;
+    for (size_t f = 0; f < sizeof edge / sizeof *edge; f++) {
+        length += snprintf(text + length, sizeof text - (size_t)length,
+                           "20\nLattice=\"%g 0 0 0 50 0 0 0 60\" Properties=species:S:1:pos:R:3 "
+                           "Time=%zu\n",
+                           edge[f], 1000 * f);
+        for (int k = 0; k < 20; k++)
+            length += snprintf(text + length, sizeof text - (size_t)length, "Ar %g %g %g\n",
+                               1.3 * k, 0.7 * k * k, 11.0 * k + edge[f]);
+    }
+    temporary_folder_write(*state, "shrinking.xyz", text, (size_t)length);
+    MEASURE("shrinking.xyz", "--static", "-o", "usual");
+    assert_contains(result.err, "g(r) to 0.9 nm in 90 bins");
+    assert_close(results_number("usual/summary.json", "frames"), 6, 1e-9);
+    MEASURE("shrinking.xyz", "--static", "--range", "0.9", "-o", "told", "--quiet");
+    results_assert_same("usual", "told",
+                        (const char *const[]){"rdf.tsv", "structure_factor.tsv", NULL});
+    // In time, escapes are followed no further either: 0.9 of half the least box.
+    MEASURE("shrinking.xyz", "--begin", "0", "-o", "moving");
+    assert_contains(result.err, "g(r) to 0.9 nm in 90 bins");
+    assert_contains(result.err, "escape times of pairs from 0.45 to 0.9 nm");
+    REFUSED("frame 4: the range of g(r), 1.5 nm, is beyond half the shortest height",
+            "shrinking.xyz", "--static", "--range", "1.5", "-o", "none");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -128,6 +161,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_measure_has_the_same_window_when_frames_are_of_other_lengths),
         TEST(test_measure_has_the_box_that_is_told),
+        TEST(test_measure_has_a_range_by_the_least_box),
         TEST(test_measure_has_masses_of_a_topology),
         TEST(test_measure_has_the_types_of_the_file),
     };

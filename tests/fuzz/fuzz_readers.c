@@ -10,6 +10,8 @@
 #include "defaults/fit_file.h"
 #include "import/import_system.h"
 #include "report/result.h"
+#include "scene/molecules_listing.h"
+#include "scene/molecules_file.h"
 #include "trajectory/mapping.h"
 #include "trajectory/trajectory.h"
 #include "trajectory/votca_map.h"
@@ -121,6 +123,26 @@ static void read_trajectory(const char *file, const char *units) {
     mf_trajectory_close(&trajectory);
 }
 
+/// The molecules of a file that lists atoms, and what each of these is: of itself they fit.
+static void read_molecules(const char *file) {
+    struct scene_molecules molecules;
+    struct composition types;
+    struct molecules_listing listing = {.repeats = 0};
+    struct trajectory trajectory;
+    const struct trajectory_options options = {.units = "lj"};
+    if (mf_molecules_file_read(&molecules, &types, file) != STATUS_OK)
+        return;
+    if (mf_trajectory_open(&trajectory, file, &options) == STATUS_OK) {
+        if (mf_molecules_listing_read(&listing, &molecules.molecules.topology, file, "lj",
+                                      &trajectory.structure, false) == STATUS_OK &&
+            listing.repeats != 1)
+            abort();
+        mf_molecules_listing_clear(&listing);
+        mf_trajectory_close(&trajectory);
+    }
+    mf_scene_molecules_clear(&molecules);
+}
+
 static void read_map(const char *file) {
     struct mapping_plan plan;
     if (mf_mapping_plan_read(&plan, file) != STATUS_OK)
@@ -193,7 +215,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (size == 0)
         return 0;
     const uint8_t kind = data[0];
-    const char *const file = kind == 'w' || kind == 'i' ? "input.xml" : "input";
+    const char *const file = kind == 'w' || kind == 'i' ? "input.xml"
+                             : kind == 'g'              ? "input.top"
+                             : kind == 'd'              ? "input.data"
+                                                        : "input";
     write_file(file, ++data, --size);
     if (kind == 't')
         read_table(file);
@@ -207,6 +232,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         read_trajectory(file, NULL);
     else if (kind == 'l')
         read_trajectory(file, "lj");
+    else if (kind == 'g' || kind == 'd')
+        read_molecules(file);
     else if (kind == 'm')
         read_map(file);
     else if (kind == 'w')

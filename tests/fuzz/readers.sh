@@ -24,7 +24,12 @@ add v $corpus/fit-votca/target.dist.tgt tests/reference_data/votca/*/*.dpot.imc
 add s $corpus/*/scene.json
 add r $corpus/*/run.json
 add x tests/fuzz/trajectories/*
-add l tests/fuzz/trajectories/*.d* tests/fuzz/trajectories/*.gsd
+add l tests/fuzz/trajectories/*.d* tests/fuzz/trajectories/*.gsd tests/fuzz/trajectories/*.mol
+add d tests/fuzz/trajectories/*.data tests/fuzz/trajectories/*.mol
+add g tests/fuzz/trajectories/*.top tests/fuzz/trajectories/*.itp
+printf 't# of LAMMPS\nAA\nN 3 R 1 3\n\n1 1 8 -1\n2 2 4 -2\n3 3 2 -3\n' >"$place/t-lammps-law"
+printf 't# Row r g\n100 3\n1 1 0 0\n2 2 1 1\n3 3 1 2\n' >"$place/t-lammps-average"
+printf 't"r / pm",U/kJ/mol,x (A)\n1,2,3\n2,3,4\n' >"$place/t-strokes"
 printf 'm{"beads": {"A": {"residue": "B", "atoms": "C D"}, "E": {"first": 1, "last": 6, "size": 3}}, "masses": {"C": 1}}' >"$place/m-map"
 printf 'w<cg_molecule><name>m</name><topology><cg_beads><cg_bead><name>a</name><type>A</type><mapping>w</mapping><beads>1:R:C 2:S:D</beads></cg_bead><cg_bead><name>b</name><type>A</type><mapping>w</mapping><beads>2:S:E 2:S:F</beads></cg_bead></cg_beads><cg_bonded><bond><name>s</name><beads>a b</beads></bond></cg_bonded></topology><maps><map><name>w</name><weights>1 2</weights></map></maps></cg_molecule>' >"$place/w-map"
 printf 'i<cg><non-bonded><name>A-A</name><type1>A</type1><type2>A</type2><max>0.9</max><inverse><target>target.tsv</target><p_target>1</p_target><post_update>pressure</post_update></inverse></non-bonded><bonded><name>b</name><inverse><gromacs><table>table_b1.xvg</table></gromacs></inverse></bonded><inverse><kBT>2.5</kBT><filelist>beads.tsv</filelist></inverse></cg>' >"$place/i-settings"

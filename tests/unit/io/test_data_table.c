@@ -138,6 +138,40 @@ static void test_data_table_read_takes_the_first_set_when_a_line_ends_it(void **
     assert_same_rows(state, "@TYPE xy\n0.5 1.5 0.1\n1 2 0.2\n&\n@TYPE xy\n0.5 x\n&\n", 2);
 }
 
+static void assert_r_and_values(void **state, const char *text, bool averaged, size_t first_line) {
+    struct data_table table;
+    assert_ok(mf_data_table_read(&table, write_text(state, text), 2));
+    assert_int_equal(table.rows, 3);
+    assert_int_equal(table.columns, 3);
+    const double expected[] = {0.5, 8, -1, 1.5, 4, -2, 2.5, 2, -3};
+    for (int k = 0; k < 9; k++)
+        assert_identical(table.values[k], expected[k]);
+    assert_int_equal(table.line[0], first_line);
+    assert_int_equal(table.lammps, averaged ? DATA_LAMMPS_AVERAGE : DATA_LAMMPS_LAW);
+    mf_data_table_clear(&table);
+}
+
+/// Manual of LAMMPS: pair_style table, fix ave/time.
+static void test_data_table_read_leaves_out_the_numbers_of_rows_of_lammps(void **state) {
+    struct data_table table;
+    assert_r_and_values(state,
+                        "# DATE: 2020-06-10\n\nSOME_WORD\nN 3 FP 1 2\n\n 1 0.5 8 -1\n 2 1.5 4 -2\n"
+                        "# between\n 3 2.5 2 -3\n",
+                        false, 6);
+    assert_r_and_values(state,
+                        "# Time-averaged data for fix r\n# TimeStep Number-of-rows\n# Row a b c\n"
+                        "60000 3\n1 0.5 8 -1\n2 1.5 4 -2\n3 2.5 2 -3\n",
+                        true, 5);
+    assert_refused(state, "0 3\n1 0.5 8\n2 1 4\n3 2 2\n100 3\n1 0.5 8\n2 1 4\n3 2 2\n",
+                   "t.dat:5: a second section of LAMMPS begins");
+    // What only looks like it stays, and is refused as ever.
+    assert_refused(state, "7 4\n1 0.5 8\n2 1 4\n3 2 2\n", "the first row has 2");
+    assert_refused(state, "7 3\n1 0.5 8\n2 1 4\n4 2 2\n", "the first row has 2");
+    assert_ok(mf_data_table_read(&table, write_text(state, "1 2\n2 4\n"), 2));
+    assert_int_equal(table.rows, 2);
+    mf_data_table_clear(&table);
+}
+
 static void test_data_table_read_says_so_when_decimals_have_a_comma(void **state) {
     assert_refused(state, "0.5;1.5\n1;1,25\n",
                    ":2: column 2: \"1,25\" is not a finite number: a decimal comma? other");
@@ -317,6 +351,7 @@ int main(void) {
         IN_FOLDER(test_data_table_read_skips_names_of_columns_and_percent_comments),
         IN_FOLDER(test_data_table_read_core_leaves_out_what_is_infinite_at_the_begin),
         IN_FOLDER(test_data_table_read_takes_the_first_set_when_a_line_ends_it),
+        IN_FOLDER(test_data_table_read_leaves_out_the_numbers_of_rows_of_lammps),
         IN_FOLDER(test_data_table_read_says_so_when_decimals_have_a_comma),
         IN_FOLDER(test_data_table_read_takes_decimal_commas_that_part_no_columns),
         IN_FOLDER(test_data_table_read_takes_lines_of_text_and_words_in_quotes),

@@ -36,7 +36,12 @@ static void test_data_table_convert_reads_the_units_of_headings(void **state) {
         "\"r (A)\";\"U(A-A), mean [kcal/mol]\"\n3,4;0,23846451\n",
         "of my figure\nr\tphi\nA\tkcal/mol\n3,4\t0,23846451\n",
         "# r phi\n# (A) (kcal/mol)\n3.4 0.23846451\n",
-        "r;phi\n[nm];\n0.34;0.997735512\n"};
+        "r;phi\n[nm];\n0.34;0.997735512\n",
+        "# r (pm)  phi (J/mol)\n340 997.735512\n",
+        "Distance / Angstrom,phi/kcal/mol\n3.4,0.23846451\n",
+        "# Distance / Angstrom phi / kcal/mol\n3.4 0.23846451\n",
+        "# r/nm U/eV\n0.34 0.01034079989\n",
+        "\"r / pm\"\t\"phi / kJ mol^-1\"\n340\t0.997735512\n"};
     double value[2];
     for (size_t k = 0; k < sizeof same / sizeof *same; k++) {
         assert_ok(convert(state, same[k], &argon, value));

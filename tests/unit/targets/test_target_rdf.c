@@ -69,6 +69,24 @@ static void test_target_read_lets_the_first_bin_begin_above_0(void **state) {
     mf_target_rdf_clear(&target);
 }
 
+/// LAMMPS's fix ave/time of compute rdf: step and rows, then a row's number, r, g and the
+/// neighbours so far, which are no errors.
+static void test_target_read_takes_g_of_fix_ave_time(void **state) {
+    struct target_rdf target;
+    assert_ok(read(state,
+                   "# Time-averaged data for fix r\n# TimeStep Number-of-rows\n"
+                   "# Row c_r[1] c_r[2] c_r[3]\n60000 4\n1 0.05 0 0\n2 0.15 0.5 1\n"
+                   "3 0.25 1.5 4\n4 0.35 1 9\n",
+                   "", &target));
+    assert_close(target.bins.low, 0, 0);
+    assert_close(target.bins.width, 0.1, 1e-15);
+    assert_close(target.g[2], 1.5, 0);
+    assert_close(target.error[3], 0.002, 1e-15); // none is given
+    mf_target_rdf_clear(&target);
+    assert_refused(state, "1 0.05 0 0\n2 0.15 0.5 1\n3 0.25 1.5 4\n4 0.35 1 9\n", "",
+                   "g.tsv: column 1 numbers the rows, and column 2 increases as r does");
+}
+
 static void test_target_read_forgives_the_rounding_of_the_file(void **state) {
     struct target_rdf target;
     // Bins of 1/300, given with five decimals.
@@ -307,6 +325,7 @@ int main(void) {
         TEST(test_target_read_takes_the_bins_from_their_centres),
         TEST(test_target_read_keeps_the_whole_beside_what_is_cut),
         TEST(test_target_read_lets_the_first_bin_begin_above_0),
+        TEST(test_target_read_takes_g_of_fix_ave_time),
         TEST(test_target_read_forgives_the_rounding_of_the_file),
         TEST(test_target_read_takes_the_columns_it_is_told),
         TEST(test_target_read_names_the_line_behind_a_gap),

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // GSD files written out byte by byte as its documentation says (gsd.readthedocs.io, file layer and
-// schema hoomd): names of file layer 1 and 2, what a frame takes from frame 0, images of a sheared
-// box, molecules by bonds; what is refused.
+// schema hoomd): names of file layer 1 and 2, numbers of every type, as versions of HOOMD write
+// them, what a frame takes from frame 0, images of a sheared box, molecules by bonds; what is
+// refused.
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 #include "trajectory/mapping.h"
@@ -18,11 +19,30 @@ enum {
     ATOMS = 4,
     HEAD = 256,
     UINT8 = 1,
-    UINT32 = 3,
-    UINT64 = 4,
-    INT8 = 5,
-    INT32 = 7,
-    FLOAT = 9
+    UINT16,
+    UINT32,
+    UINT64,
+    INT8,
+    INT16,
+    INT32,
+    INT64,
+    FLOAT,
+    DOUBLE,
+    CHARACTER
+};
+
+/// Numbers as a program writes them: types of names, of other integers, and of all else.
+static struct {
+    const char *by;
+    uint8_t name, integer, real;
+} written, writers[] = {
+               {"gsd's module", INT8, UINT32, FLOAT},
+               {"HOOMD 2.2 to 6", UINT8, UINT32, FLOAT},
+               {"HOOMD 7, double", UINT8, UINT32, DOUBLE},
+               {"file layer 2.1", CHARACTER, INT32, DOUBLE},
+               {"narrow", INT8, INT8, FLOAT},
+               {"half", INT8, INT16, FLOAT},
+               {"wide", UINT8, INT64, DOUBLE},
 };
 
 static unsigned char file_bytes[MAX], index_bytes[MAX], names[MAX];
@@ -41,6 +61,13 @@ static void begin_file(int file_version) {
     index_size = names_size = 0;
     name_count = 0;
     version = file_version;
+    written = writers[0];
+}
+
+/// As it is written by one of them.
+static void begin_file_by(int writer) {
+    begin_file(writer % 2 + 1);
+    written = writers[writer];
 }
 
 static void add_chunk(uint64_t frame, const char *name, uint8_t type, uint64_t rows,
@@ -60,6 +87,28 @@ static void add_chunk(uint64_t frame, const char *name, uint8_t type, uint64_t r
     put(index_bytes, &index_size, &id, 2);
     put(index_bytes, &index_size, &type, 1);
     put(index_bytes, &index_size, &flags, 1);
+}
+
+static void add_reals(int frame, const char *name, uint64_t rows, uint32_t columns,
+                      const float *numbers) {
+    double wide[6 * ATOMS];
+    const size_t count = rows * columns;
+    for (size_t k = 0; k < count; k++)
+        wide[k] = (double)numbers[k];
+    if (written.real == DOUBLE)
+        add_chunk((uint64_t)frame, name, DOUBLE, rows, columns, wide, 8 * count);
+    else
+        add_chunk((uint64_t)frame, name, FLOAT, rows, columns, numbers, 4 * count);
+}
+
+/// Little-endian: the lowest bytes are a number that is narrower.
+static void add_integers(int frame, const char *name, uint64_t rows, uint32_t columns,
+                         const int32_t *numbers) {
+    const size_t bytes = (size_t)1 << (written.integer - 1) % 4, count = rows * columns;
+    unsigned char as[8 * 3 * ATOMS];
+    for (size_t k = 0; k < count; k++)
+        memcpy(as + bytes * k, &(int64_t){numbers[k]}, bytes);
+    add_chunk((uint64_t)frame, name, written.integer, rows, columns, as, bytes * count);
 }
 
 /// Names and index follow the chunks; both have room that is not used.
@@ -103,30 +152,30 @@ static void add_vectors(int frame, const char *name, float factor) {
     for (int k = 0; k < ATOMS; k++)
         for (int d = 0; d < 3; d++)
             numbers[k][d] = factor * coordinate(frame, k, d);
-    add_chunk((uint64_t)frame, name, FLOAT, ATOMS, 3, numbers, sizeof numbers);
+    add_reals(frame, name, ATOMS, 3, numbers[0]);
 }
 
 /// Frame 0 has all but a step, frame 1 positions, frame 2 a box, and all velocities if `moves`, or
 /// else frame 0 alone.
 static void add_frames(bool moves) {
-    add_chunk(0, "configuration/box", FLOAT, 6, 1, box, sizeof box);
-    add_chunk(0, "particles/N", UINT32, 1, 1, &(uint32_t){ATOMS}, 4);
-    add_chunk(0, "particles/types", INT8, 2, 5, "Pol\0\0Water", 10);
-    add_chunk(0, "particles/typeid", UINT32, ATOMS, 1, (uint32_t[]){1, 0, 0, 1}, 16);
-    add_chunk(0, "particles/mass", FLOAT, ATOMS, 1, (float[]){18, 2.5F, 3, 18}, 16);
+    add_reals(0, "configuration/box", 6, 1, box);
+    add_integers(0, "particles/N", 1, 1, (int32_t[]){ATOMS});
+    add_chunk(0, "particles/types", written.name, 2, 5, "Pol\0\0Water", 10);
+    add_integers(0, "particles/typeid", ATOMS, 1, (int32_t[]){1, 0, 0, 1});
+    add_reals(0, "particles/mass", ATOMS, 1, (float[]){18, 2.5F, 3, 18});
     add_vectors(0, "particles/position", 1);
     add_vectors(0, "particles/velocity", -2);
-    add_chunk(0, "particles/image", INT32, ATOMS, 3, image, sizeof image);
-    add_chunk(0, "bonds/N", UINT32, 1, 1, &(uint32_t){1}, 4);
-    add_chunk(0, "bonds/group", version == 2 ? UINT32 : INT32, 1, 2, (uint32_t[]){2, 1}, 8);
-    add_chunk(0, "bonds/types", INT8, 2, 3, "no\0yes", 6);
-    add_chunk(0, "bonds/typeid", UINT32, 1, 1, &(uint32_t){1}, 4);
+    add_integers(0, "particles/image", ATOMS, 3, image[0]);
+    add_integers(0, "bonds/N", 1, 1, (int32_t[]){1});
+    add_integers(0, "bonds/group", 1, 2, (int32_t[]){2, 1});
+    add_chunk(0, "bonds/types", written.name, 2, 3, "no\0yes", 6);
+    add_integers(0, "bonds/typeid", 1, 1, (int32_t[]){1});
     add_chunk(1, "configuration/step", UINT64, 1, 1, &(uint64_t){500}, 8);
     add_vectors(1, "particles/position", 1);
     if (moves)
         add_vectors(1, "particles/velocity", -2);
     add_chunk(2, "configuration/step", UINT64, 1, 1, &(uint64_t){1000}, 8);
-    add_chunk(2, "configuration/box", FLOAT, 6, 1, (float[]){9, 9, 9, 0, 0, 0}, 24);
+    add_reals(2, "configuration/box", 6, 1, (float[]){9, 9, 9, 0, 0, 0});
     if (moves)
         add_vectors(2, "particles/velocity", -2);
 }
@@ -173,8 +222,8 @@ static void assert_frame(int number, const double vectors[3][3]) {
 static void test_gsd_is_read_where_frames_lean_on_the_first(void **state) {
     static const double sheared[3][3] = {{8, 0, 0}, {5, 10, 0}, {3, -6, 12}},
                         cube[3][3] = {{9, 0, 0}, {0, 9, 0}, {0, 0, 9}};
-    for (int layer = 1; layer <= 2; layer++) {
-        begin_file(layer);
+    for (int writer = 0; writer < (int)(sizeof writers / sizeof *writers); writer++) {
+        begin_file_by(writer);
         add_frames(true);
         end_file("hoomd");
         assert_ok(try(state, "real"));
@@ -185,6 +234,8 @@ static void test_gsd_is_read_where_frames_lean_on_the_first(void **state) {
         assert_int_equal(bonds->atom[0], 2);
         assert_int_equal(bonds->atom[1], 1);
         assert_string_equal(bonds->name[bonds->type[0]], "yes");
+        assert_string_equal(trajectory.structure.atom[3].name, "Water");
+        assert_true(trajectory.structure.atom[1].mass == 2.5);
         for (int number = 0; number < 3; number++) {
             next(true);
             assert_frame(number, number < 2 ? sheared : cube);
@@ -286,6 +337,24 @@ static void test_gsd_is_refused_when_it_cannot_be_what_it_says(void **state) {
     close_all();
 }
 
+static void test_gsd_is_refused_when_a_number_is_of_no_type_that_it_may_have(void **state) {
+    begin_file(2);
+    add_frames(true);
+    add_chunk(3, "configuration/box", INT32, 6, 1, (int32_t[]){9, 9, 9, 0, 0, 0}, 24);
+    end_file("hoomd");
+    bool more;
+    assert_ok(try(state, "lj"));
+    for (int number = 0; number < 3; number++)
+        next(true);
+    assert_fails(mf_trajectory_next(&trajectory, &frame, &more), STATUS_BAD_INPUT,
+                 "has 6 rows of 1 numbers of type 7, which it cannot have");
+    close_all();
+    begin_file(2);
+    add_chunk(0, "particles/N", INT64, 1, 1, &(int64_t){(int64_t)1 << 40}, 8);
+    end_file("hoomd");
+    assert_fails(try(state, "lj"), STATUS_BAD_INPUT, "\"particles/N\" has a number beyond 32 bits");
+}
+
 static void test_gsd_needs_a_file_when_it_comes_by_a_pipe(void **state) {
     char name[1024];
     begin_file(2);
@@ -315,6 +384,7 @@ int main(void) {
         TEST(test_gsd_has_types_masses_and_molecules_by_bonds),
         TEST(test_gsd_has_no_other_types_than_those_of_its_names),
         TEST(test_gsd_is_refused_when_it_cannot_be_what_it_says),
+        TEST(test_gsd_is_refused_when_a_number_is_of_no_type_that_it_may_have),
         TEST(test_gsd_needs_a_file_when_it_comes_by_a_pipe),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -195,6 +195,37 @@ static void test_data_file_has_any_of_four_styles(void **state) {
     check_style(state, "Atoms # I like comments", "1 3 7 8 9", "5 2 1 2 3", true);
 }
 
+/// Manual, Howto_triclinic and Howto_type_labels: any right-handed vectors, positions as they are,
+/// labels in place of numbers, also without a comment that names the style.
+static void test_data_file_has_a_general_box_and_labels(void **state) {
+    static const char text[] =
+        "units = nano\n\n2 atoms\n2 atom types\n1 bonds\n2 bond types\n\n0 3 1 avec\n-2 0 1 bvec\n"
+        "1 0.5 4 cvec\n1 1 1 abc origin\n\nAtom Type Labels\n\n1 OW # oxygen\n2 H+2\n\n"
+        "Bond Type Labels\n\n1 x\n2 OW-H\n\nMasses\n\nH+2 3\nOW 2\n\nAtoms\n\n"
+        "7 1 H+2 1 2 3 1 0 -1\n5 1 OW 4 5 6 0 2 0\n\nBonds\n\n1 OW-H 5 7\n";
+    static const double image[2][3] = {{4 - 4, 5, 6 + 2}, {1 - 1, 2 + 3 - 0.5, 3 + 1 - 4}};
+    struct trajectory_frame frame = {0};
+    bool more;
+    assert_ok(try(state, text, NULL));
+    const struct structure *const structure = &trajectory.structure;
+    assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+    for (int k = 0; k < 2; k++)
+        for (int d = 0; d < 3; d++)
+            assert_true(frame.position[k][d] == image[k][d]);
+    assert_true(frame.box[0][0] == 0 && frame.box[0][1] == 3 && frame.box[1][0] == -2 &&
+                frame.box[2][1] == 0.5 && frame.has_box && frame.periodic[2]);
+    assert_string_equal(structure->atom[0].name, "OW");
+    assert_string_equal(structure->atom[1].name, "H+2");
+    assert_int_equal(structure->atom[1].type, 2);
+    assert_true(structure->atom[0].mass != structure->atom[1].mass);
+    assert_int_equal(structure->terms[0].count, 1);
+    assert_int_equal(structure->terms[0].type[0], 2);
+    assert_true(structure->terms[0].atom[0] == 0 && structure->terms[0].atom[1] == 1);
+    assert_int_equal(structure->residues, 1);
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&trajectory);
+}
+
 static const char dump[] =
     "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n"
     "0 1\n0 1\n0 1\nITEM: ATOMS id x y z\n2 1 2 3\n1 4 5 6\n";
@@ -315,6 +346,7 @@ int main(void) {
         cmocka_unit_test(test_velocities_are_those_of_the_flight),
         cmocka_unit_test(test_data_file_is_the_last_frame),
         TEST(test_data_file_has_any_of_four_styles),
+        TEST(test_data_file_has_a_general_box_and_labels),
         TEST(test_dump_has_a_box_of_three_vectors),
         TEST(test_dump_is_periodic_when_it_does_not_say),
         TEST(test_units_must_be_told_unless_the_file_does),

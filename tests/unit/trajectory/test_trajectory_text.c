@@ -152,6 +152,32 @@ static void test_extended_xyz_has_box_velocities_and_columns(void **state) {
     close_all();
 }
 
+/// ASE writes sqrt(u eV): 1 of it for 4 u is a quarter of 9822.694743 m/s (CODATA 2018, eV and u),
+/// and an element has its mass.
+static void test_extended_xyz_of_ase_has_momenta(void **state) {
+    open_text(state, "a.xyz",
+              "2\nProperties=species:S:1:pos:R:3:masses:R:1:momenta:R:3 pbc=\"F F F\"\n"
+              "X 1 2 3 4.0 1 0 -2\nX 1 2 3 2.0 0 1 0\n",
+              NULL);
+    next(true);
+    assert_true(frame.has_velocities);
+    assert_true(fabs(frame.velocity[0][0] - 2.4556736858) < 1e-8);
+    assert_true(fabs(frame.velocity[0][2] + 4.9113473717) < 1e-8);
+    assert_true(fabs(frame.velocity[1][1] - 4.9113473717) < 1e-8);
+    close_all();
+    open_text(state, "a.xyz", "1\nProperties=species:S:1:pos:R:3:momenta:R:3\nAr 1 2 3 39.95 0 0\n",
+              NULL);
+    next(true);
+    assert_true(trajectory.structure.has_masses && trajectory.structure.atom[0].mass == 39.95);
+    assert_true(fabs(frame.velocity[0][0] - 9.822694743) < 1e-8);
+    close_all();
+    open_text(state, "a.xyz", "1\nProperties=species:S:1:pos:R:3:momenta:R:3\nBead 1 2 3 1 0 0\n",
+              NULL);
+    next(true);
+    assert_false(frame.has_velocities || trajectory.structure.has_masses);
+    close_all();
+}
+
 #define PDB_ATOM(number, name, chain, x)                                                           \
     "ATOM      " number " " name " ALA " chain "   " number "    " x                               \
     "   2.000  -3.000  1.00  0.00           C\n"
@@ -237,6 +263,17 @@ static void assert_refused(void **state, const char *name, const char *text, con
         close_all();
 }
 
+/// As GROMACS and VOTCA read it.
+static void test_gro_has_a_box_where_a_fourth_number_stands(void **state) {
+    open_text(state, "a.gro",
+              "t\n1\n    1ABC      C    1   0.100   0.200   0.300\n 3.1 4.2 5.3 7\n", NULL);
+    next(true);
+    assert_vector(frame.box[0], 3.1, 0, 0);
+    assert_vector(frame.box[1], 0, 4.2, 0);
+    assert_vector(frame.box[2], 0, 0, 5.3);
+    close_all();
+}
+
 static void test_text_is_refused_with_its_line(void **state) {
     assert_refused(state, "a.gro", "t\n2\n    1ABC      C    1   0.1", "a.gro:3: frame 0: ");
     assert_refused(state, "a.gro", "t\nmany\n", "a.gro:2: frame 0: expected the number of atoms");
@@ -293,6 +330,8 @@ int main(void) {
         TEST(test_pdb_has_models_and_a_box_that_changes),
         TEST(test_pdb_residues_are_apart_when_their_numbers_are_not_decimal),
         cmocka_unit_test(test_box_of_angles_has_these_angles),
+        TEST(test_extended_xyz_of_ase_has_momenta),
+        TEST(test_gro_has_a_box_where_a_fourth_number_stands),
         TEST(test_text_is_refused_with_its_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
