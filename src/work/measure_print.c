@@ -164,6 +164,19 @@ static void print_temperature(struct progress *progress, const struct measure_re
             given, text);
 }
 
+/// What cools or heats up all along has no temperature.
+static void print_heating(struct progress *progress, const struct measure_result *result) {
+    const struct series *const kinetic = &result->measured->motion.temperature;
+    const struct equilibration_drift drift = mf_equilibration_drift(kinetic->value, kinetic->count);
+    if (equilibration_drifts(&drift, 1))
+        mf_progress_print(
+            progress,
+            "mesofit: warning: the velocities have %.4g +- %.1g K in the first %.0f %% of the "
+            "frames, %.4g +- %.1g K in the rest: use frames from where nothing changes any more "
+            "(--begin), or simulate for longer",
+            drift.before, drift.before_error, 100 * drift.part, drift.after, drift.after_error);
+}
+
 /// Units that were told are wrong more often than matter is so hot or cold.
 static void print_speeds(struct progress *progress, const struct measure_result *result) {
     static const double hottest = 1e4, coldest = 1;
@@ -202,6 +215,7 @@ static void print_all(struct progress *progress, const struct measure_result *re
                                     "with and not fitted, since friction is for one mass");
     print_speeds(progress, result);
     print_temperature(progress, result);
+    print_heating(progress, result);
 }
 
 enum status mf_measure_print(struct progress *progress, const struct measure_result *result) {
