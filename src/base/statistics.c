@@ -89,7 +89,10 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
     return inefficiency_of(values, length, chains, numbers, NULL);
 }
 
-double mf_statistics_correlated_error(const double *values, size_t length, size_t chains) {
+/// Values of which an error is found; of more the means of so many blocks.
+enum { MAX_VALUES = 64 };
+
+static double error_of_values(const double *values, size_t length, size_t chains) {
     const size_t n = length * chains;
     if (n < 2)
         return 0;
@@ -97,6 +100,22 @@ double mf_statistics_correlated_error(const double *values, size_t length, size_
     if (!(variance > 0))
         return variance;
     return sqrt(variance * mf_statistics_inefficiency(values, length, chains, 1) / (double)n);
+}
+
+/// Blocks of a chain that differ by one value at most.
+double mf_statistics_correlated_error(const double *values, size_t length, size_t chains) {
+    double block[MAX_VALUES];
+    const size_t blocks = chains > 0 ? MAX_VALUES / chains : 0;
+    if (length <= blocks || blocks < 2)
+        return error_of_values(values, length, chains);
+    for (size_t b = 0; b < blocks * chains; b++) {
+        const double *chain = values + b / blocks * length;
+        struct running_mean mean = {0};
+        for (size_t k = b % blocks * length / blocks; k < (b % blocks + 1) * length / blocks; k++)
+            mf_statistics_add(&mean, chain[k]);
+        block[b] = mean.mean;
+    }
+    return error_of_values(block, blocks, chains);
 }
 
 /// Inefficiencies of the numbers that are slower than all are, or 0: numbers whose neighbourhood of
