@@ -17,6 +17,16 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
                       "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, for this box: a larger "
                       "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
                       diffusion, s.fit_begin, s.fit_end);
+    const struct frame_motion *const path = &motion->path;
+    if (path->far > 0)
+        mf_progress_print(
+            progress,
+            "mesofit: warning: from frame to frame %.2g %% of the steps along the "
+            "box come near half of it, and the file does not tell which image beads "
+            "are in: MSD, D, escape times and VACF of differences are wrong; take "
+            "frames closer together, or write images (xu yu zu or ix iy iz in LAMMPS, "
+            "particles/image in GSD and H5MD)",
+            100 * (double)path->far / (double)path->steps);
     if (motion->path.differences)
         mf_progress_print(progress,
                           "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
