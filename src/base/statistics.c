@@ -89,7 +89,7 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
     return inefficiency_of(values, length, chains, numbers, NULL);
 }
 
-/// Values of which an error is found; of more the means of so many blocks.
+/// Of more values the means of so many blocks are looked at, too.
 enum { MAX_VALUES = 64 };
 
 static double error_of_values(const double *values, size_t length, size_t chains) {
@@ -115,7 +115,7 @@ double mf_statistics_correlated_error(const double *values, size_t length, size_
             mf_statistics_add(&mean, chain[k]);
         block[b] = mean.mean;
     }
-    return error_of_values(block, blocks, chains);
+    return fmin(error_of_values(values, length, chains), error_of_values(block, blocks, chains));
 }
 
 /// Inefficiencies of the numbers that are slower than all are, or 0: numbers whose neighbourhood of

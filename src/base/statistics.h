@@ -40,9 +40,10 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
 /// Standard error of the mean of one such number; 0 for fewer than two values:
 ///   error² = Γ(0)/n times the inefficiency.
 ///
-/// Of more than 64 values it is that of the means of 64 blocks: where values swing, as a pressure
-/// does with stiff bonds, their correlation has signs in turn, whose sum ends too early for Geyer,
-/// and may be below that of independent values; means over some swings have neither.
+/// Of more than 64 values it is that of the means of 64 blocks if that is smaller: where values
+/// swing, as a pressure does with stiff bonds, their correlation has signs in turn, whose sum ends
+/// too early for Geyer, and may be below that of independent values; means over some swings have
+/// neither.
 /// The truth lies within two errors in 95 % of the series when they are 60 times as long as their
 /// correlation, 1 + 2 Σ Γ(t)/Γ(0), in 93 % at 20 times, and in 88 % at 8 times: no estimate can
 /// tell what a short series does not show.
