@@ -47,14 +47,15 @@ static struct chains describe(const double *values, size_t length, size_t count)
 }
 
 /// Mean autocorrelation of the numbers that scatter at all; 0 if none does.
+/// @param[in] apart  shape [numbers]: above 0 of those that are left out; NULL: of none
 static double autocorrelation(const double *values, size_t length, size_t chains, size_t numbers,
-                              size_t lag) {
+                              const double *apart, size_t lag) {
     double sum = 0, count = 0;
     if (lag >= length)
         return 0;
     for (size_t n = 0; n < numbers; n++) {
         const struct chains one = describe(values + n * length * chains, length, chains);
-        if (!(one.variance > 0))
+        if (!(one.variance > 0) || (apart && apart[n] > 0))
             continue;
         sum += autocovariance(&one, lag) / one.variance;
         count += 1;
@@ -62,16 +63,16 @@ static double autocorrelation(const double *values, size_t length, size_t chains
     return count > 0 ? sum / count : 0;
 }
 
-double mf_statistics_inefficiency(const double *values, size_t length, size_t chains,
-                                  size_t numbers) {
+static double inefficiency_of(const double *values, size_t length, size_t chains, size_t numbers,
+                              const double *apart) {
     const double n = (double)(length * chains);
     double sum = -1, last = INFINITY;
     size_t window = 0;
     if (length * chains < 2)
         return 1;
     for (size_t t = 0; t == 0 || t + 1 < length / 2; t += 2) {
-        const double pair = autocorrelation(values, length, chains, numbers, t) +
-                            autocorrelation(values, length, chains, numbers, t + 1);
+        const double pair = autocorrelation(values, length, chains, numbers, apart, t) +
+                            autocorrelation(values, length, chains, numbers, apart, t + 1);
         if (!(pair > 0))
             break;
         last = fmin(last, pair);
@@ -83,7 +84,15 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
     return fmax(sum / left, 1 / (n - 1)) * n;
 }
 
-double mf_statistics_correlated_error(const double *values, size_t length, size_t chains) {
+double mf_statistics_inefficiency(const double *values, size_t length, size_t chains,
+                                  size_t numbers) {
+    return inefficiency_of(values, length, chains, numbers, NULL);
+}
+
+/// Of more values the means of so many blocks are looked at, too.
+enum { MAX_VALUES = 64 };
+
+static double error_of_values(const double *values, size_t length, size_t chains) {
     const size_t n = length * chains;
     if (n < 2)
         return 0;
@@ -93,11 +102,48 @@ double mf_statistics_correlated_error(const double *values, size_t length, size_
     return sqrt(variance * mf_statistics_inefficiency(values, length, chains, 1) / (double)n);
 }
 
+/// Blocks of a chain that differ by one value at most.
+double mf_statistics_correlated_error(const double *values, size_t length, size_t chains) {
+    double block[MAX_VALUES];
+    const size_t blocks = chains > 0 ? MAX_VALUES / chains : 0;
+    if (length <= blocks || blocks < 2)
+        return error_of_values(values, length, chains);
+    for (size_t b = 0; b < blocks * chains; b++) {
+        const double *chain = values + b / blocks * length;
+        struct running_mean mean = {0};
+        for (size_t k = b % blocks * length / blocks; k < (b % blocks + 1) * length / blocks; k++)
+            mf_statistics_add(&mean, chain[k]);
+        block[b] = mean.mean;
+    }
+    return fmin(error_of_values(values, length, chains), error_of_values(block, blocks, chains));
+}
+
+/// Inefficiencies of the numbers that are slower than all are, or 0: numbers whose neighbourhood of
+/// five is so beyond chance, of which it tells a relative sqrt(2/n) or so.
+static void find_slow(const double *values, size_t length, size_t chains, size_t numbers,
+                      double *slow) {
+    static const double errors = 4;
+    enum { REACH = 2 };
+    const size_t n = length * chains;
+    const double all = mf_statistics_inefficiency(values, length, chains, numbers);
+    const double limit = all * (1 + errors * sqrt(2 / (double)n));
+    for (size_t k = 0; k < numbers; k++) {
+        const size_t from = k > REACH ? k - REACH : 0,
+                     to = k + REACH < numbers ? k + REACH + 1 : numbers;
+        const bool is_slow =
+            mf_statistics_inefficiency(values + from * n, length, chains, to - from) > limit;
+        const double own = mf_statistics_inefficiency(values + k * n, length, chains, 1);
+        slow[k] = is_slow ? fmax(all, own) : 0;
+    }
+}
+
 void mf_statistics_correlated_errors(const double *values, size_t length, size_t chains,
                                      size_t numbers, double *error) {
     const size_t n = length * chains;
-    const double inefficiency = mf_statistics_inefficiency(values, length, chains, numbers);
+    find_slow(values, length, chains, numbers, error);
+    const double others = inefficiency_of(values, length, chains, numbers, error);
     for (size_t k = 0; k < numbers; k++) {
+        const double inefficiency = error[k] > 0 ? error[k] : others;
         struct running_mean mean = {0};
         for (size_t m = 0; m < n; m++)
             mf_statistics_add(&mean, values[k * n + m]);

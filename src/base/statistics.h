@@ -40,6 +40,10 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
 /// Standard error of the mean of one such number; 0 for fewer than two values:
 ///   error² = Γ(0)/n times the inefficiency.
 ///
+/// Of more than 64 values it is that of the means of 64 blocks if that is smaller: where values
+/// swing, as a pressure does with stiff bonds, their correlation has signs in turn, whose sum ends
+/// too early for Geyer, and may be below that of independent values; means over some swings have
+/// neither.
 /// The truth lies within two errors in 95 % of the series when they are 60 times as long as their
 /// correlation, 1 + 2 Σ Γ(t)/Γ(0), in 93 % at 20 times, and in 88 % at 8 times: no estimate can
 /// tell what a short series does not show.
@@ -47,9 +51,16 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
 /// Tested: test_statistics, test_errors.
 double mf_statistics_correlated_error(const double *values, size_t length, size_t chains);
 
-/// Standard errors of the means of several such numbers that are taken to be correlated alike, as
-/// the bins of a distribution are:
-///   error² = Γ(0)/n times the inefficiency of all of them.
+/// Standard errors of the means of several such numbers, of which neighbours are alike, as the bins
+/// of a distribution are:
+///   error² = Γ(0)/n times the inefficiency,
+/// that of all together, which does not scatter as that of each would, but for those that are
+/// slower: where five neighbours have more than 1 + 4 sqrt(2/n) times that of all, each has its own
+/// if it is larger, and no part in that of the others. A contact that comes and goes slowly would
+/// else drown in the many bins that are fast, and its error be a half of what it should be.
+///
+/// Rms of the means over these errors, of 24 numbers of 20 to 160 values: 0.95 to 1.05 where all
+/// are alike; with two to four slow ones 0.87 to 1.08 of these, 0.87 to 0.95 of their neighbours.
 /// @param[in]  values  shape [numbers, chains, length]
 /// @param[out] error   shape [numbers]; 0 for fewer than two values
 /// Tested: test_statistics.

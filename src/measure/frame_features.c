@@ -2,8 +2,6 @@
 #include "measure/frame_features.h"
 
 #include "base/memory.h"
-#include "observe/equilibration.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -68,7 +66,11 @@ enum status mf_frame_features_add(struct frame_features *features,
 struct look {
     const struct frame_features *features;
     size_t blocks;  ///< that are complete
+    size_t from;    ///< block from which on drift is looked for
+    bool drift;     ///< instead of a beginning
+    size_t count;   ///< series so far
     double *series; ///< shape [blocks]: pairs of a frame
+    struct frame_features_slowest slowest;
 };
 
 /// Add a feature to the present series.
@@ -91,15 +93,25 @@ static double later_mean(const struct look *look) {
     return sum / (double)(look->blocks - half);
 }
 
-/// Keep what settles later than all before.
-static void keep(struct frame_features_slowest *slowest, struct frame_features_slowest now) {
-    if (now.frames > slowest->frames)
-        *slowest = now;
+/// Keep what settles later than all before, or drifts more.
+static void keep(struct look *look, struct frame_features_slowest now) {
+    const struct frame_features_slowest *const slowest = &look->slowest;
+    if (look->drift ? now.drift.ratio > slowest->drift.ratio : now.frames > slowest->frames)
+        look->slowest = now;
+}
+
+/// Look at the present series, which is of what `now` says.
+static void judge(struct look *look, struct frame_features_slowest now) {
+    if (look->drift)
+        now.drift = mf_equilibration_drift(look->series + look->from, look->blocks - look->from);
+    else
+        now.frames = look->features->each * mf_equilibration_length(look->series, look->blocks);
+    look->count++;
+    keep(look, now);
 }
 
 /// Ranges that are empty in the second half; returns how many.
-static size_t assess_core(struct look *look, size_t first, struct frame_features_slowest now,
-                          struct frame_features_slowest *slowest) {
+static size_t assess_core(struct look *look, size_t first, struct frame_features_slowest now) {
     const size_t each = look->features->each;
     size_t empty = 0;
     begin(look);
@@ -116,58 +128,71 @@ static size_t assess_core(struct look *look, size_t first, struct frame_features
         look->series[b] *= (double)each;
     now.frames = each * mf_equilibration_length_of_events(look->series, look->blocks);
     now.to = now.from + (double)empty * now.to;
-    keep(slowest, now);
+    if (!look->drift)
+        keep(look, now);
     return empty;
 }
 
 /// The ranges of one pair type. @param[in] now  what it is, with `to` the width of a range
-static void assess_pair(struct look *look, size_t first, struct frame_features_slowest now,
-                        struct frame_features_slowest *slowest) {
+static void assess_pair(struct look *look, size_t first, struct frame_features_slowest now) {
     const double width = now.to;
-    size_t from = assess_core(look, first, now, slowest);
+    size_t from = assess_core(look, first, now);
     begin(look);
     for (size_t range = from; range < FEATURE_RANGES; range++) {
         add(look, first + range);
         if (later_mean(look) < enough)
             continue;
-        now.frames = look->features->each * mf_equilibration_length(look->series, look->blocks);
         now.from = (double)from * width;
         now.to = (double)(range + 1) * width;
-        keep(slowest, now);
+        judge(look, now);
         from = range + 1;
         begin(look);
     }
 }
 
-static void assess_volume(struct look *look, struct frame_features_slowest *slowest) {
+static void assess_volume(struct look *look) {
     begin(look);
     add(look, 0);
-    keep(slowest,
-         (struct frame_features_slowest){
-             .frames = look->features->each * mf_equilibration_length(look->series, look->blocks),
-             .volume = true});
+    judge(look, (struct frame_features_slowest){.volume = true});
+}
+
+/// Look at all series.
+static enum status assess_all(struct look *look, const struct frame_pairs_plan *plan) {
+    const struct frame_features *const features = look->features;
+    OWNED double *series = NULL;
+    if (features->block == NULL)
+        return STATUS_OK;
+    look->blocks = features->frames / features->each;
+    look->from = look->from < look->blocks ? look->from : look->blocks;
+    TRY_ARRAY(series, look->blocks);
+    look->series = series;
+    assess_volume(look);
+    const size_t types = (size_t)mf_composition_pairs(&plan->composition);
+    const size_t count = (features->features - 1) / FEATURE_RANGES;
+    for (size_t k = 0; k < count; k++)
+        assess_pair(look, 1 + k * FEATURE_RANGES,
+                    (struct frame_features_slowest){.pair = (int)(k % types),
+                                                    .within = k >= types,
+                                                    .to = plan->range / FEATURE_RANGES});
+    return STATUS_OK;
 }
 
 enum status mf_frame_features_assess(const struct frame_features *features,
                                      const struct frame_pairs_plan *plan,
                                      struct frame_features_slowest *slowest) {
-    enum status status = STATUS_OK;
     struct look look = {.features = features};
-    *slowest = (struct frame_features_slowest){0};
-    if (features->block == NULL)
-        return STATUS_OK;
-    look.blocks = features->frames / features->each;
-    NEW_ARRAY(look.series, look.blocks);
-    assess_volume(&look, slowest);
-    const size_t types = (size_t)mf_composition_pairs(&plan->composition);
-    const size_t series = (features->features - 1) / FEATURE_RANGES;
-    for (size_t k = 0; k < series; k++)
-        assess_pair(&look, 1 + k * FEATURE_RANGES,
-                    (struct frame_features_slowest){.pair = (int)(k % types),
-                                                    .within = k >= types,
-                                                    .to = plan->range / FEATURE_RANGES},
-                    slowest);
-done:
-    mf_memory_free(look.series);
-    return status;
+    TRY(assess_all(&look, plan));
+    *slowest = look.slowest;
+    return STATUS_OK;
+}
+
+enum status mf_frame_features_drift(const struct frame_features *features,
+                                    const struct frame_pairs_plan *plan, size_t begin,
+                                    struct frame_features_slowest *slowest) {
+    struct look look = {.features = features, .drift = true};
+    look.from = features->each > 0 ? (begin + features->each - 1) / features->each : 0;
+    TRY(assess_all(&look, plan));
+    *slowest = look.slowest;
+    slowest->drifts = equilibration_drifts(&slowest->drift, look.count);
+    return STATUS_OK;
 }

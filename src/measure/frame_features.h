@@ -7,6 +7,7 @@
 #pragma once
 
 #include "measure/frame_pairs.h"
+#include "observe/equilibration.h"
 
 /// Ranges of the distance of one pair type, as many of pairs of different molecules as of pairs
 /// within them; blocks.
@@ -28,16 +29,25 @@ enum status mf_frame_features_add(struct frame_features *features,
 
 void mf_frame_features_clear(struct frame_features *features);
 
-/// What is the last to reach equilibrium.
+/// What is the farthest from equilibrium.
 struct frame_features_slowest {
-    size_t frames;   ///< at the beginning that are not in equilibrium (observe/equilibration.h)
-    bool volume;     ///< it is the volume; else pairs
-    bool within;     ///< of one molecule
-    int pair;        ///< of these types
-    double from, to; ///< at this distance [nm]
+    size_t frames; ///< at the beginning that are not in equilibrium (observe/equilibration.h)
+    bool drifts;   ///< along the frames, by more than chance
+    struct equilibration_drift drift; ///< pairs of a frame, or volumes [nm³]
+    bool volume;                      ///< it is the volume; else pairs
+    bool within;                      ///< of one molecule
+    int pair;                         ///< of these types
+    double from, to;                  ///< at this distance [nm]
 };
 
-/// Fails: NO_MEMORY. Tested: test_frame_features.
+/// What is the last to reach equilibrium after a beginning. Fails: NO_MEMORY. Tested:
+/// test_frame_features.
 enum status mf_frame_features_assess(const struct frame_features *features,
                                      const struct frame_pairs_plan *plan,
                                      struct frame_features_slowest *slowest) MUST_USE;
+
+/// What drifts most along the frames from number `begin` on. Fails: NO_MEMORY. Tested:
+/// test_frame_features.
+enum status mf_frame_features_drift(const struct frame_features *features,
+                                    const struct frame_pairs_plan *plan, size_t begin,
+                                    struct frame_features_slowest *slowest) MUST_USE;

@@ -7,8 +7,13 @@
 /// changes the box it is the integral of H ds/dt, the velocity relative to the flow that scales
 /// positions with the box: the momenta of constant-pressure dynamics, and what diffuses. (Unwrapped
 /// positions themselves would be scaled by all that the box has changed since: S. von Bülow,
-/// J. T. Bullerjahn and G. Hummer, J. Chem. Phys. 153, 021101 (2020).) A bead must not go half a
-/// height of the box between two frames.
+/// J. T. Bullerjahn and G. Hummer, J. Chem. Phys. 153, 021101 (2020).)
+///
+/// Where both frames tell the images of the box, whole boxes are added to the way to the nearest.
+/// Elsewhere a bead must not go half a height of the box between two frames, and it is counted how
+/// many came near that. Images are not believed in a frame in which most beads that would have
+/// gone around the box are found where they were: of a run that was begun again, or of a file that
+/// calls wrapped positions unwrapped.
 ///
 /// Velocities may be those of the frames, or differences of places around a frame,
 ///   v_n = (r_{n+1} − r_{n−1}) / (2 Δt),
@@ -28,7 +33,10 @@ struct frame_motion {
     double box[3][3];  ///< likewise [nm]
     double *path[3];   ///< shape [3, beads] each: two frames before, one before, now [nm]
     double *state;     ///< shape [2, 3, beads]: positions [nm], velocities [nm/ps]
+    double *boxes;     ///< shape [2, 3, beads]: fractions of the box, now and in the frame before
+    bool unwrapped;    ///< the frame before tells them
     size_t frames;
+    uint64_t steps, far; ///< to nearest images alone along vectors of the box, and near half of it
 };
 
 /// Fails: NO_MEMORY.

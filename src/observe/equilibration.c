@@ -5,7 +5,6 @@
 
 #include <gsl/gsl_cdf.h>
 #include <math.h>
-#include <stdbool.h>
 
 static const size_t min_samples = 20;
 
@@ -103,4 +102,59 @@ size_t mf_equilibration_length_of_events(const double *events, size_t samples) {
     if (samples < min_samples || 2 * end > samples)
         return 0;
     return pow((double)end / (double)samples, together) < chance ? end : 0;
+}
+
+/// Parts of a series that may drift, and the farthest that are compared for their noise.
+enum { PARTS = 20, LAGS = 2 };
+
+static void find_parts(const double *series, size_t samples, double part[PARTS]) {
+    for (size_t b = 0; b < PARTS; b++) {
+        struct running_mean mean = {0};
+        for (size_t k = b * samples / PARTS; k < (b + 1) * samples / PARTS; k++)
+            mf_statistics_add(&mean, series[k]);
+        part[b] = mean.mean;
+    }
+}
+
+/// Half of the mean square of what parts `lag` apart differ by, without the `lag` largest: one step
+/// makes so many.
+static double noise_of(const double part[PARTS], size_t lag) {
+    double largest[LAGS] = {0}, sum = 0;
+    for (size_t b = 0; b + lag < PARTS; b++) {
+        double square = pow(part[b + lag] - part[b], 2);
+        for (size_t k = 0; k < lag; k++) {
+            const double smaller = fmin(square, largest[k]);
+            largest[k] = fmax(square, largest[k]);
+            square = smaller;
+        }
+        sum += square;
+    }
+    return 0.5 * sum / (double)(PARTS - 2 * lag);
+}
+
+struct equilibration_drift mf_equilibration_drift(const double *series, size_t samples) {
+    struct equilibration_drift most = {0};
+    double part[PARTS], noise = 0, all = 0, first = 0;
+    if (samples < min_samples)
+        return most;
+    find_parts(series, samples, part);
+    for (size_t lag = 1; lag <= LAGS; lag++)
+        noise = fmax(noise, noise_of(part, lag));
+    for (size_t b = 0; b < PARTS; b++)
+        all += part[b];
+    for (size_t k = 1; k < PARTS; k++) {
+        first += part[k - 1];
+        const double left = (double)(PARTS - k), before = first / (double)k;
+        const double after = (all - first) / left, off = fabs(before - after);
+        const double error = sqrt(noise * (1 / (double)k + 1 / left));
+        const double ratio = off > rounding * fabs(after) ? off / error : 0;
+        if (ratio > most.ratio)
+            most = (struct equilibration_drift){.ratio = ratio,
+                                                .part = (double)k / PARTS,
+                                                .before = before,
+                                                .after = after,
+                                                .before_error = sqrt(noise / (double)k),
+                                                .after_error = sqrt(noise / left)};
+    }
+    return most;
 }

@@ -3,15 +3,16 @@
 
 #include "base/memory.h"
 #include "base/statistics.h"
+#include "observe/equilibration.h"
 
 #include <math.h>
 
 /// Longer series are averaged in blocks first, so that their autocovariances stay cheap.
 enum { MAX_BLOCKS = 4096 };
 
-/// Thresholds for halves and for independent samples.
-static const size_t min_of_halves = 20, min_of_all = 50;
-static const double deviations = 4, enough = 10;
+/// Samples by which correlation can be told, and how many independent ones are enough.
+static const size_t min_of_all = 50;
+static const double enough = 10;
 
 /// Relative scatter that sums of doubles have by themselves.
 static const double rounding = 1e-9;
@@ -29,21 +30,15 @@ static void average(const double *series, size_t each, double *block, size_t blo
         block[b] = mean_of(series + b * each, each);
 }
 
-static enum status assess_halves(const char *name, const double *block, size_t blocks) {
-    const size_t half = blocks / 2;
-    double mean[2], error[2];
-    for (int h = 0; h < 2; h++) {
-        const double *own = block + (h ? blocks - half : 0);
-        mean[h] = mean_of(own, half);
-        error[h] = mf_statistics_correlated_error(own, half, 1);
-    }
-    if (fabs(mean[0] - mean[1]) <= deviations * hypot(error[0], error[1]))
+static enum status assess_drift(const char *name, const double *block, size_t blocks) {
+    const struct equilibration_drift drift = mf_equilibration_drift(block, blocks);
+    if (!equilibration_drifts(&drift, 1))
         return STATUS_OK;
     return mf_status_fail(
         STATUS_UNCONVERGED,
-        "the %s is %.6g +- %.1g in the first half of the samples and %.6g +- %.1g in the second: "
+        "the %s is %.6g +- %.1g in the first %.0f %% of the samples and %.6g +- %.1g in the rest: "
         "the run was not in equilibrium; equilibrate for longer",
-        name, mean[0], error[0], mean[1], error[1]);
+        name, drift.before, drift.before_error, 100 * drift.part, drift.after, drift.after_error);
 }
 
 static enum status assess_correlation(const char *name, const double *block, size_t blocks,
@@ -63,12 +58,12 @@ enum status mf_equilibrium_check(const char *name, const double *series, size_t 
     OWNED double *block = NULL;
     for (size_t k = 0; k < samples; k++)
         mf_statistics_add(&all, series[k]);
-    if (samples < min_of_halves || !(sqrt(all.squares / all.count) > rounding * fabs(all.mean)))
+    if (!(sqrt(all.squares / all.count) > rounding * fabs(all.mean)))
         return STATUS_OK;
     const size_t each = (samples + MAX_BLOCKS - 1) / MAX_BLOCKS, blocks = samples / each;
     TRY_ARRAY(block, blocks);
     average(series, each, block, blocks);
-    TRY(assess_halves(name, block, blocks));
+    TRY(assess_drift(name, block, blocks));
     if (samples >= min_of_all)
         TRY(assess_correlation(name, block, blocks, samples));
     return STATUS_OK;

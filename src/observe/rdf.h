@@ -102,8 +102,8 @@ enum { RDF_SPANS = 3 };
 size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans);
 
 /// g and its standard error over the blocks of all replicas, whose correlation the bins of a kind
-/// of pairs tell together (mf_statistics_inefficiency): of close samples even the means of blocks
-/// are correlated.
+/// of pairs tell together but for slower ones (mf_statistics_correlated_errors): of close samples
+/// even the means of blocks are correlated.
 /// @param[in]  replicas  shape [count], same bins, box and composition
 /// @param[out] g, error  shape [pairs, bins.count]; error may be NULL
 /// Fails: NO_MEMORY, with an error asked for. Tested: test_rdf, test_errors.

@@ -317,8 +317,7 @@ static size_t filled_blocks(const struct rdf_force *replicas, size_t count) {
     return min;
 }
 
-/// Errors by leaving out each block in turn (jackknife), with the correlation of blocks that all
-/// bins show together.
+/// Errors by leaving out each block in turn (jackknife), whose correlation the bins show.
 static enum status find_errors(const struct rdf_force *replicas, size_t count,
                                enum rdf_force_version version, struct pool *pool, double *error) {
     enum status status = STATUS_OK;
@@ -331,15 +330,9 @@ static enum status find_errors(const struct rdf_force *replicas, size_t count,
             without[k * values + n] = estimate(pool, version, k);
         pool_add(pool, &replicas[n / blocks], n % blocks, 1);
     }
-    const double inefficiency = mf_statistics_inefficiency(without, blocks, count, pool->bins);
-    for (size_t k = 0; k < pool->bins; k++) {
-        struct running_mean mean = {0};
-        for (size_t n = 0; n < values; n++)
-            mf_statistics_add(&mean, without[k * values + n]);
-        error[k] = values < 2
-                       ? 0
-                       : ((double)values - 1) / (double)values * sqrt(mean.squares * inefficiency);
-    }
+    mf_statistics_correlated_errors(without, blocks, count, pool->bins, error);
+    for (size_t k = 0; k < pool->bins; k++)
+        error[k] *= fmax((double)values - 1, 0);
 done:
     mf_memory_free(without);
     return status;

@@ -168,8 +168,8 @@ static enum status print_lammps(struct beads_file *file, const struct trajectory
         fprintf(stream, " time=%.9g", beads->time * femtosecond);
     fprintf(stream, " units=real\n%zu\n", beads->atoms);
     TRY(print_lammps_box(stream, beads));
-    fprintf(stream, "ITEM: ATOMS id mol type element%s xu yu zu%s\n", masses ? " mass" : "",
-            beads->has_velocities ? " vx vy vz" : "");
+    fprintf(stream, "ITEM: ATOMS id mol type element%s%s%s\n", masses ? " mass" : "",
+            beads->unwrapped ? " xu yu zu" : " x y z", beads->has_velocities ? " vx vy vz" : "");
     for (size_t n = 0; n < beads->atoms; n++) {
         const size_t k = file->order[n];
         const struct mapping_bead *const bead = &file->mapping->bead[k];

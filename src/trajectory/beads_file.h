@@ -15,6 +15,7 @@ struct beads_file {
     const struct structure *structure;    ///< of its atoms, borrowed
     size_t *order;                        ///< shape [beads]: as the atoms stand, and not by type
     bool has_velocities;                  ///< of GSD, whose frames all have them or none
+    bool has_images;                      ///< likewise
     size_t frames;                        ///< that were written
     const struct trajectory_frame *beads; ///< that are being written, borrowed
     struct output output;

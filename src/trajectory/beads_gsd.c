@@ -46,6 +46,8 @@ static size_t rows_of(const struct beads_file *file, enum chunk chunk, size_t fr
         return mapping->beads;
     case VELOCITY:
         return file->has_velocities ? mapping->beads : 0;
+    case IMAGE:
+        return file->has_images ? mapping->beads : 0;
     default:
         return mapping->beads;
     }
@@ -142,6 +144,7 @@ static void put_chunk(const struct beads_file *file, const struct trajectory_fra
 enum status mf_beads_gsd_print(struct beads_file *file, const struct trajectory_frame *beads) {
     if (file->frames == 0) {
         file->has_velocities = beads->has_velocities;
+        file->has_images = beads->unwrapped;
         mf_gsd_put_head(file->output.stream, 0, 0, 0); // in its place until the end is known
     }
     TRY(check(file, beads));

@@ -17,6 +17,7 @@ struct header {
     uint64_t step;
     double box[6]; ///< lengths and tilts
     bool has_velocities, has_images;
+    bool has_own_images; ///< else they are those of frame 0, which may not be written again
 };
 
 static bool recognise(const unsigned char *begin, size_t size) {
@@ -96,6 +97,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
         TRY(mf_gsd_chunks_take_if(trajectory, number, VELOCITY, gsd->atoms, raw,
                                   &header.has_velocities));
     TRY(mf_gsd_chunks_take_if(trajectory, number, IMAGE, gsd->atoms, raw, &header.has_images));
+    header.has_own_images = mf_gsd_chunks_find(gsd, number, IMAGE);
     memcpy(raw->data, &header, sizeof header);
     return STATUS_OK;
 }
@@ -246,6 +248,7 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     frame->step = header.step < INT64_MAX ? (int64_t)header.step : -1;
     mf_frame_set_box(frame, box);
     TRY(mf_frame_reserve(frame, atoms, header.has_velocities));
+    frame->unwrapped = header.has_own_images;
     for (size_t k = 0; k < 3 * atoms; k++) {
         const size_t at = 8 * k;
         frame->position[k / 3][k % 3] = x * binary_double(position + at, false);

@@ -242,6 +242,7 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     for (int i = 0; i < 3; i++)
         frame->periodic[i] = frame->has_box && h5md->periodic[i];
     TRY(mf_frame_reserve(frame, trajectory->structure.atoms, header.has_velocities));
+    frame->unwrapped = header.has_images;
     if (header.has_ids) {
         TRY_ARRAY(place, frame->atoms);
         TRY(find_atoms(trajectory, frame, place));

@@ -169,6 +169,7 @@ static enum status read_atoms(const struct trajectory *trajectory, struct trajec
     struct word word[LAMMPS_MAX_COLUMNS];
     enum lammps_column from;
     TRY(find_positions(dump, frame, &from));
+    frame->unwrapped = from == LAMMPS_XU || from == LAMMPS_XSU || has_vector(dump, LAMMPS_IX);
     const char *line = dump->first;
     for (size_t k = 0; k < dump->atoms; k++, line = mf_frame_next_line(frame, line)) {
         size_t atom = k;

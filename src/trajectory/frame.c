@@ -23,6 +23,7 @@ static enum status reserve(double (**array)[3], size_t *capacity, size_t atoms) 
 enum status mf_frame_reserve(struct trajectory_frame *frame, size_t atoms, bool velocities) {
     frame->atoms = atoms;
     frame->has_velocities = velocities;
+    frame->unwrapped = false;
     TRY(reserve(&frame->position, &frame->capacity, atoms));
     return velocities ? reserve(&frame->velocity, &frame->speed_capacity, atoms) : STATUS_OK;
 }

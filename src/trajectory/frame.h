@@ -17,6 +17,7 @@ struct trajectory_frame {
     double time;           ///< [ps]; NAN: not known
     bool has_box;          ///< else `box` is 0 and nothing is periodic
     bool has_velocities;   ///< in this frame
+    bool unwrapped;        ///< positions tell how often an atom has gone around the box
     bool periodic[3];      ///< along the vectors of the box
     double box[3][3];      ///< its vectors a, b, c, one a row [nm]
     size_t atoms;          ///< as the trajectory's structure has
@@ -31,7 +32,8 @@ struct trajectory_frame {
     size_t capacity, speed_capacity; ///< atoms that the arrays could hold
 };
 
-/// Room for positions, and for velocities if `velocities`, which is what has_velocities becomes.
+/// Room for positions, and for velocities if `velocities`, which is what has_velocities becomes;
+/// `unwrapped` becomes false.
 /// Fails: NO_MEMORY.
 enum status mf_frame_reserve(struct trajectory_frame *frame, size_t atoms,
                              bool velocities) MUST_USE;

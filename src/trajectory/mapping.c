@@ -122,6 +122,7 @@ static void copy_surroundings(const struct trajectory_frame *frame,
     beads->step = frame->step;
     beads->time = frame->time;
     beads->has_box = frame->has_box;
+    beads->unwrapped = frame->unwrapped;
     memcpy(beads->periodic, frame->periodic, sizeof beads->periodic);
     memcpy(beads->box, frame->box, sizeof beads->box);
     beads->file = frame->file;

@@ -206,6 +206,8 @@ static enum status write_summary(const struct measure_result *result) {
     mf_json_write_text(writer, "status",
                        mf_status_name(result->interrupted ? STATUS_INTERRUPTED : STATUS_OK));
     mf_json_write_text(writer, "method", "measure");
+    if (result->drift[0])
+        mf_json_write_text(writer, "warning", result->drift);
     mf_units_write_summary(&result->units, writer);
     mf_json_write_number(writer, "seconds", result->seconds);
     mf_json_write_integer(writer, "frames", (int64_t)result->measured->frames);

@@ -15,6 +15,7 @@ struct measure_result {
     const struct scene_molecules *kinds; ///< that the beads are, or NULL
     struct units units;
     const char *folder;
+    const char *drift; ///< warning of what changes along the trajectory, or ""
     bool interrupted;
     double seconds;
 };

@@ -17,6 +17,16 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
                       "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, for this box: a larger "
                       "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
                       diffusion, s.fit_begin, s.fit_end);
+    const struct frame_motion *const path = &motion->path;
+    if (path->far > 0)
+        mf_progress_print(
+            progress,
+            "mesofit: warning: from frame to frame %.2g %% of the steps along the "
+            "box come near half of it, and the file does not tell which image beads "
+            "are in: MSD, D, escape times and VACF of differences are wrong; take "
+            "frames closer together, or write images (xu yu zu or ix iy iz in LAMMPS, "
+            "particles/image in GSD and H5MD)",
+            100 * (double)path->far / (double)path->steps);
     if (motion->path.differences)
         mf_progress_print(progress,
                           "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
@@ -164,6 +174,19 @@ static void print_temperature(struct progress *progress, const struct measure_re
             given, text);
 }
 
+/// What cools or heats up all along has no temperature.
+static void print_heating(struct progress *progress, const struct measure_result *result) {
+    const struct series *const kinetic = &result->measured->motion.temperature;
+    const struct equilibration_drift drift = mf_equilibration_drift(kinetic->value, kinetic->count);
+    if (equilibration_drifts(&drift, 1))
+        mf_progress_print(
+            progress,
+            "mesofit: warning: the velocities have %.4g +- %.1g K in the first %.0f %% of the "
+            "frames, %.4g +- %.1g K in the rest: use frames from where nothing changes any more "
+            "(--begin), or simulate for longer",
+            drift.before, drift.before_error, 100 * drift.part, drift.after, drift.after_error);
+}
+
 /// Units that were told are wrong more often than matter is so hot or cold.
 static void print_speeds(struct progress *progress, const struct measure_result *result) {
     static const double hottest = 1e4, coldest = 1;
@@ -202,6 +225,7 @@ static void print_all(struct progress *progress, const struct measure_result *re
                                     "with and not fitted, since friction is for one mass");
     print_speeds(progress, result);
     print_temperature(progress, result);
+    print_heating(progress, result);
 }
 
 enum status mf_measure_print(struct progress *progress, const struct measure_result *result) {

@@ -28,7 +28,8 @@ struct run {
     struct frames frames;
     struct measured measured;
     struct beads_file beads;
-    double height; ///< of the least box, where the first does not do for the range [nm]; else 0
+    double height;   ///< of the least box, where the first does not do for the range [nm]; else 0
+    char drift[512]; ///< what changes along the trajectory; "": nothing
 };
 
 /// Every file that is read must be spared.
@@ -258,12 +259,43 @@ static enum status read_again(struct run *run, size_t skip) {
     return read_frames(run);
 }
 
+/// What goes on to the end is no beginning, and nothing can be left out.
+static enum status tell_drift(struct run *run, size_t begin) {
+    struct frame_features_slowest most;
+    char what[128];
+    TRY(mf_frame_features_drift(&run->measured.features, &run->measured.pairs, begin, &most));
+    if (!most.drifts)
+        return STATUS_OK;
+    print_slowest(run, &most, what, sizeof what);
+    snprintf(run->drift, sizeof run->drift,
+             "the trajectory is not in equilibrium: %s: %.4g +- %.1g%s in the first %.0f %% of the "
+             "frames, %.4g +- %.1g in the rest: use frames from where nothing changes any more "
+             "(--begin), or simulate for longer",
+             what, most.drift.before, most.drift.before_error, most.volume ? " nm^3" : " a frame",
+             100 * most.drift.part, most.drift.after, most.drift.after_error);
+    mf_progress_print(&run->progress, "mesofit: warning: %s", run->drift);
+    return STATUS_OK;
+}
+
+/// What is not over where no more may be left out goes on.
+static void tell_rest(struct run *run, size_t left_out, size_t frames, const char *what) {
+    static const double most = 0.4;
+    if (run->drift[0] || (double)left_out < most * (double)frames)
+        return;
+    snprintf(run->drift, sizeof run->drift,
+             "the first %zu of %zu frames were not in equilibrium (%s), and the rest may still be "
+             "on its way: simulate for longer",
+             left_out, frames, what);
+    mf_progress_print(&run->progress, "mesofit: warning: %s", run->drift);
+}
+
 /// Leave out what is before equilibrium, unless a person has said where to begin.
 static enum status find_equilibrium(struct run *run) {
+    const size_t frames = run->measured.frames;
     struct frame_features_slowest slowest;
     TRY(mf_frame_features_assess(&run->measured.features, &run->measured.pairs, &slowest));
     if (slowest.frames == 0)
-        return STATUS_OK;
+        return tell_drift(run, 0);
     char what[128];
     print_slowest(run, &slowest, what, sizeof what);
     if (!isnan(run->request->frames.begin) || !can_be_read_again(&run->frames)) {
@@ -271,14 +303,17 @@ static enum status find_equilibrium(struct run *run) {
                           "mesofit: warning: the first %zu frames are not in equilibrium (%s): "
                           "--begin leaves them out",
                           slowest.frames, what);
-        return STATUS_OK;
+        return tell_drift(run, slowest.frames);
     }
     mf_progress_print(&run->progress,
                       "the first %zu of %zu frames are not in equilibrium (%s) and are left out; "
                       "--begin 0 keeps them",
-                      slowest.frames, run->measured.frames, what);
+                      slowest.frames, frames, what);
     run->height = 0;
-    return read_again(run, slowest.frames);
+    TRY(read_again(run, slowest.frames));
+    TRY(tell_drift(run, 0));
+    tell_rest(run, slowest.frames, frames, what);
+    return STATUS_OK;
 }
 
 static enum status write_results(struct run *run, bool interrupted) {
@@ -291,6 +326,7 @@ static enum status write_results(struct run *run, bool interrupted) {
                                           .kinds = run->request->molecules ? &run->molecules : NULL,
                                           .units = mf_measured_units(run->request->system),
                                           .folder = run->folder.path,
+                                          .drift = run->drift,
                                           .interrupted = interrupted,
                                           .seconds = mf_progress_seconds(&run->progress)};
     TRY(mf_run_folder_begin(&run->folder, 0));

@@ -99,10 +99,26 @@ static void test_tables_without_a_number_are_not_written(void **state) {
     free(target);
 }
 
-/// Atoms at places of a multiplicative generator (D. H. Lehmer); those of the first 10 of 80 frames
-/// are in half of the box along x.
-static void write_compressed(struct temporary_folder *folder) {
-    enum { ATOMS = 60, SHOTS = 80 };
+enum { ATOMS = 60, SHOTS = 80 };
+
+static bool in_beginning(int atom, int frame) {
+    (void)atom;
+    return frame < 10;
+}
+
+static bool along_all(int atom, int frame) {
+    return atom * SHOTS >= frame * ATOMS;
+}
+
+static bool late(int atom, int frame) {
+    (void)atom;
+    return frame < 48;
+}
+
+/// Atoms at places of a multiplicative generator (D. H. Lehmer); those that are compressed are in
+/// half of the box along x.
+static void write_compressed(struct temporary_folder *folder,
+                             bool (*is_compressed)(int atom, int frame)) {
     char *text = malloc(SHOTS * (ATOMS + 2) * 48);
     size_t length = 0;
     uint64_t random = 12345;
@@ -117,8 +133,9 @@ static void write_compressed(struct temporary_folder *folder) {
                 random = random * 48271 % 2147483647;
                 place[d] = 30 * (double)random / 2147483647;
             }
-            length += (size_t)sprintf(text + length, "Ar %.3f %.3f %.3f\n",
-                                      t < 10 ? place[0] / 2 : place[0], place[1], place[2]);
+            length +=
+                (size_t)sprintf(text + length, "Ar %.3f %.3f %.3f\n",
+                                is_compressed(k, t) ? place[0] / 2 : place[0], place[1], place[2]);
         }
     }
     temporary_folder_write(folder, "box.xyz", text, length);
@@ -126,7 +143,7 @@ static void write_compressed(struct temporary_folder *folder) {
 }
 
 static void test_frames_before_equilibrium_are_left_out(void **state) {
-    write_compressed(*state);
+    write_compressed(*state, in_beginning);
     RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "-o", "out");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, " of 80 frames are not in equilibrium (pairs at ");
@@ -139,6 +156,23 @@ static void test_frames_before_equilibrium_are_left_out(void **state) {
     assert_true(results_number("all/summary.json", "frames") == 80);
     RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "--begin", "10", "-o", "rest");
     assert_null(strstr(result.err, "equilibrium"));
+}
+
+/// Atoms that spread one after the other until the end, which no half that is left out mends, or
+/// all at 60 % of the frames.
+static void test_frames_that_never_settle_are_told_with_what_changes(void **state) {
+    static bool (*const ways[])(int atom, int frame) = {along_all, late};
+    for (int k = 0; k < 2; k++) {
+        write_compressed(*state, ways[k]);
+        RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "-o", k ? "late" : "all");
+        run_program_assert_code(&result, 0);
+        char *summary = temporary_folder_read(k ? "late/summary.json" : "all/summary.json");
+        const char *warning = k ? "the trajectory is not in equilibrium: pairs at "
+                                : "80 frames were not in equilibrium (pairs at ";
+        assert_contains(result.err, warning);
+        assert_contains(summary, warning);
+        free(summary);
+    }
 }
 
 #define AT(x)                                                                                      \
@@ -168,6 +202,7 @@ int main(void) {
         TEST(test_lines_of_old_macs_are_refused),
         TEST(test_tables_without_a_number_are_not_written),
         TEST(test_frames_before_equilibrium_are_left_out),
+        TEST(test_frames_that_never_settle_are_told_with_what_changes),
         TEST(test_frames_of_one_time_are_used_when_they_are_independent),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -21,10 +21,12 @@ static void make_counts(uint64_t *counts, uint32_t frame, uint32_t seed) {
     }
 }
 
-/// @param[in] spoil  changes the counts of the first EARLY frames
-static struct frame_features_slowest assess(uint32_t frames, uint32_t seed,
-                                            void (*spoil)(uint64_t *counts, uint32_t frame),
-                                            double first_volume) {
+/// @param[in] spoil  changes the counts of the first `spoiled` frames
+/// @param[out] drift  of the frames after the beginning
+static struct frame_features_slowest find(uint32_t frames, uint32_t seed,
+                                          void (*spoil)(uint64_t *counts, uint32_t frame),
+                                          uint32_t spoiled, double first_volume,
+                                          struct frame_features_slowest *drift) {
     const struct frame_pairs_plan plan = {
         .range = range, .bins = BINS, .composition = mf_composition_of_one(100)};
     struct frame_pairs pairs = {.counts = calloc(BINS + 1, sizeof *pairs.counts)};
@@ -33,15 +35,27 @@ static struct frame_features_slowest assess(uint32_t frames, uint32_t seed,
     for (uint32_t t = 0; t < frames; t++) {
         double normal[4];
         make_counts(pairs.counts, t, seed);
-        if (spoil && t < EARLY)
+        if (spoil && t < spoiled)
             spoil(pairs.counts, t);
         mf_rng_normal4(mf_rng_philox(seed, RNG_PLACEMENT, t, 0, 0), normal);
         assert_ok(mf_frame_features_add(&features, &plan, &pairs,
                                         (t < EARLY ? first_volume : 27) + 0.1 * normal[0]));
     }
     assert_ok(mf_frame_features_assess(&features, &plan, &slowest));
+    assert_ok(mf_frame_features_drift(&features, &plan, slowest.frames, drift));
     mf_frame_features_clear(&features);
     free(pairs.counts);
+    return slowest;
+}
+
+/// What is over after a beginning does not drift any more.
+static struct frame_features_slowest assess(uint32_t frames, uint32_t seed,
+                                            void (*spoil)(uint64_t *counts, uint32_t frame),
+                                            double first_volume) {
+    struct frame_features_slowest drift;
+    const struct frame_features_slowest slowest =
+        find(frames, seed, spoil, EARLY, first_volume, &drift);
+    assert_false(drift.drifts);
     return slowest;
 }
 
@@ -95,6 +109,24 @@ static void test_frame_features_join_the_frames_of_long_trajectories(void **stat
     assert_int_equal(slowest.frames % 8, 0);
 }
 
+/// A peak at 0.8 to 0.9 that goes on rising.
+static void rise(uint64_t *counts, uint32_t frame) {
+    for (int bin = 32; bin < 36; bin++)
+        counts[bin] += frame / 10;
+}
+
+/// Frame by frame, and of joined frames.
+static void test_frame_features_name_the_range_that_drifts_to_the_end(void **state) {
+    (void)state;
+    for (uint32_t frames = 300; frames <= 1500; frames += 1200) {
+        struct frame_features_slowest drift;
+        assert_int_equal(find(frames, 8, rise, frames, 27, &drift).frames, 0);
+        assert_true(drift.drifts && drift.drift.before < drift.drift.after);
+        assert_false(drift.volume);
+        assert_true(drift.from > 0.7 && drift.to < 1);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_frame_features_of_equilibrium_leave_nothing_out),
@@ -102,6 +134,7 @@ int main(void) {
         cmocka_unit_test(test_frame_features_see_overlaps),
         cmocka_unit_test(test_frame_features_see_the_volume),
         cmocka_unit_test(test_frame_features_join_the_frames_of_long_trajectories),
+        cmocka_unit_test(test_frame_features_name_the_range_that_drifts_to_the_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -264,6 +264,7 @@ static void test_h5md_gives_all_that_it_has_when_it_speaks_angstrom(void **state
         for (int d = 0; d < 3; d++)
             assert_close(frame.position[1][d], 0.1 * coordinate(t, 1, d) - 2 * frame.box[1][d],
                          1e-6);
+        assert_true(frame.unwrapped);
         assert_int_equal(frame.has_velocities, t % 2 == 0);
         if (t % 2 == 0)
             assert_close(frame.velocity[1][2], -0.1 * coordinate(t / 2, 1, 2), 1e-6);
@@ -281,6 +282,7 @@ static void test_h5md_has_no_times_when_its_positions_are_fixed(void **state) {
     assert_ok(try(&nothing));
     next(true);
     assert_positions(0, 1);
+    assert_false(frame.unwrapped);
     assert_true(isnan(frame.time));
     assert_false(frame.has_box);
     next(false);

@@ -71,6 +71,7 @@ static void test_dumps_are_the_same_whatever_their_columns(void **state) {
         for (int k = 0; k < FRAMES; k++) {
             assert_box(&other.frame[k]);
             assert_near(run.frame[k].position, other.frame[k].position, digits);
+            assert_true(run.frame[k].unwrapped && other.frame[k].unwrapped);
             assert_int_equal(other.frame[k].step, 5 * k);
             assert_true(fabs(other.frame[k].time - 0.01 * k) < 1e-12);
         }
@@ -85,6 +86,7 @@ static void test_atom_dump_is_the_same_but_for_images(void **state) {
     (void)state;
     read_run(&run, FOLDER "tri.dump", FRAMES);
     read_run(&other, FOLDER "atom.dump", FRAMES);
+    assert_false(other.frame[2].unwrapped);
     for (int k = 0; k < ATOMS; k++) {
         double difference[3];
         for (int d = 0; d < 3; d++)
