@@ -352,7 +352,7 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) {
                                                          .sums = &simulation->sums});
 }
 
-enum status mf_simulation_interaction_forces(const struct simulation *simulation,
+enum status mf_simulation_interaction_forces(const struct simulation *simulation, bool inner,
                                              double *const force[3]) {
     struct particles elsewhere = simulation->particles;
     for (int d = 0; d < elsewhere.box.dimensions; d++)
@@ -364,7 +364,8 @@ enum status mf_simulation_interaction_forces(const struct simulation *simulation
                                           .conservative = true,
                                           .wants = PAIR_FORCES};
     for (int k = 1; k < simulation->interactions; k++)
-        TRY(apply(&simulation->interaction[k], &pass));
+        if (!(inner && simulation->interaction[k].choice.kind->finds_pairs))
+            TRY(apply(&simulation->interaction[k], &pass));
     return STATUS_OK;
 }
 

@@ -98,9 +98,9 @@ void mf_simulation_clear(struct simulation *simulation);
 enum status mf_simulation_add_interaction(struct simulation *simulation,
                                           const struct interaction_choice *choice) MUST_USE;
 
-/// Forces of the potentials beside the pairs, added to `force`, shape [dimensions][count].
-/// Fails: as the interactions.
-enum status mf_simulation_interaction_forces(const struct simulation *simulation,
+/// Forces of the potentials beside the pairs, added to `force`, shape [dimensions][count]; within a
+/// step (`inner`) without those of beads that find each other. Fails: as the interactions.
+enum status mf_simulation_interaction_forces(const struct simulation *simulation, bool inner,
                                              double *const force[3]) MUST_USE;
 
 /// Advance by `steps` steps.

@@ -37,6 +37,9 @@ struct interaction {
     /// Acts before the pairs in a pass of both, and then adds its forces to particles->kernel_force
     /// instead: the pairs hand over the sums of all.
     bool before_pairs;
+    /// Is of beads that find each other, by the list or by particles->fraction: both are of the
+    /// last step's end, and mean nothing in between (dynamics/respa.h).
+    bool finds_pairs;
     /// Force on each particle that drives it for ever, in a direction of its own [k_B T_0/λ]. NULL:
     /// none.
     double (*push)(const void *parameters);

@@ -228,6 +228,7 @@ const struct interaction mf_many_body = {
     .parameters_size = sizeof(struct many_body),
     .state_size = sizeof(struct many_body_work),
     .cost = 120,
+    .finds_pairs = true,
     .range = range_of,
     .before_pairs = true,
     .begin = begin,

@@ -92,6 +92,7 @@ const struct interaction mf_polar_alignment = {
     .parameters_size = sizeof(struct parameters),
     .oriented = true,
     .cost = 15,
+    .finds_pairs = true,
     .range = range_of,
     .add = add,
 };

@@ -28,7 +28,7 @@ static enum status configurational(const struct simulation *simulation, double *
     const bool alone = simulation->interactions == 1;
     for (int d = 0; d < particles->box.dimensions && !alone; d++)
         NEW_ARRAY(beside[d], particles->count);
-    CHECK(mf_simulation_interaction_forces(simulation, beside));
+    CHECK(mf_simulation_interaction_forces(simulation, false, beside));
     CHECK(mf_configurational(simulation->law.potential, &simulation->law.composition,
                              simulation->setup.temperature, particles, &simulation->neighbours,
                              alone ? NULL : beside, squares, laplacian));
