@@ -86,7 +86,7 @@ double mf_statistics_inefficiency(const double *values, size_t length, size_t ch
 double mf_statistics_correlated_error(const double *values, size_t length, size_t chains) {
     const size_t n = length * chains;
     if (n < 2)
-        return 0;
+        return NAN;
     const double variance = describe(values, length, chains).variance;
     if (!(variance > 0))
         return variance;

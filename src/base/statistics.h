@@ -37,7 +37,7 @@ double mf_statistics_standard_error(const struct running_mean *running);
 double mf_statistics_inefficiency(const double *values, size_t length, size_t chains,
                                   size_t numbers);
 
-/// Standard error of the mean of one such number; 0 for fewer than two values:
+/// Standard error of the mean of one such number; NaN, not known, for fewer than two values:
 ///   error² = Γ(0)/n times the inefficiency.
 ///
 /// The truth lies within two errors in 95 % of the series when they are 60 times as long as their
