@@ -73,6 +73,7 @@ static enum status parse_time_steps(struct run *run, const char *text) {
 static enum status choose(struct run *run) {
     const struct bench_accuracy_options *options = run->options;
     const struct simulation_setup *setup = &run->scene.scene.setup;
+    TRY(mf_bench_point_check(setup, run->scene.name, "accuracy"));
     run->suitable_count = mf_bench_methods(setup, run->suitable);
     TRY(mf_bench_methods_listed(run->suitable, run->suitable_count, options->integrators,
                                 run->methods, &run->method_count));

@@ -96,17 +96,12 @@ static enum status read_scene(struct run *run, const char *file) {
 
 static enum status check_scene(const struct run *run) {
     const struct simulation_setup *setup = &run->scene.scene.setup;
-    if (!simulation_has_velocities(setup) || setup->integrator->events ||
-        setup->integrator->solvent_particles)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: bench stability wants particles with velocities and forces, "
-                              "which \"%s\" has not",
-                              run->scene.name, setup->integrator->name);
+    TRY(mf_bench_point_check(setup, run->scene.name, "stability"));
     if (setup->potential == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: bench stability wants \"conservative\": without a potential no "
-                              "time step is too large",
-                              run->scene.name);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: bench stability wants \"conservative\", whose strength it varies",
+            run->scene.name);
     return STATUS_OK;
 }
 
