@@ -5,9 +5,13 @@
 #include "base/simd.h"
 #include "dynamics/simulation.h"
 
+static bool is_fast(const struct interaction *kind) {
+    return !kind->finds_pairs;
+}
+
 static bool has_fast(const struct simulation_setup *setup) {
     for (int k = 0; k < setup->interactions; k++)
-        if (!setup->interaction[k].kind->finds_pairs)
+        if (is_fast(setup->interaction[k].kind))
             return true;
     return false;
 }
@@ -34,7 +38,7 @@ void mf_respa_clear(void *state) {
 enum status mf_respa_find(struct respa *respa, const struct simulation *simulation) {
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
         memset(respa->fast[d], 0, simulation->particles.count * sizeof *respa->fast[d]);
-    return mf_simulation_interaction_forces(simulation, true, respa->fast);
+    return mf_simulation_interaction_forces(simulation, is_fast, respa->fast);
 }
 
 /// A kick of all particles.

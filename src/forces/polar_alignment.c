@@ -95,4 +95,5 @@ const struct interaction mf_polar_alignment = {
     .finds_pairs = true,
     .range = range_of,
     .add = add,
+    .laplacian = mf_interaction_no_laplacian,
 };

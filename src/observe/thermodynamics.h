@@ -60,6 +60,7 @@ struct thermodynamics_summary {
     size_t blocks;                         ///< behind the errors, of all replicas
     double temperature, temperature_error; ///< NaN without velocities
     double temperature_configurational, temperature_configurational_error; ///< NaN without Φ
+    double laplacian_error; ///< of ⟨∇²U⟩, relative: what a ratio to it is worth
     double potential_energy, potential_energy_error;
     double pressure, pressure_error;
 };

@@ -57,10 +57,19 @@ static double response(const struct fluctuations *f, int a, double temperature, 
            temperature;
 }
 
+/// Whether the series are of the whole U: all that acts knows its Laplacian.
+static bool is_whole(const struct simulation_setup *setup) {
+    for (int k = 0; k < setup->interactions; k++)
+        if (setup->interaction[k].kind->laplacian == NULL)
+            return false;
+    return true;
+}
+
 static bool is_known(const struct simulation_setup *setup) {
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
     return setup->integrator->forces_midway && setup->potential && !mf_respa_acts(setup) &&
-           simulation_holds_temperature(setup) && masses.maximum <= masses.minimum;
+           simulation_holds_temperature(setup) && is_whole(setup) &&
+           masses.maximum <= masses.minimum;
 }
 
 struct thermodynamics_shift mf_thermodynamics_shift(const struct thermodynamics *replicas,
