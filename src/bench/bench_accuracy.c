@@ -235,8 +235,8 @@ static enum status write_table(struct run *run, const struct bench_diagram *diag
     TRY(mf_output_open(&output, run->options->output));
     mf_bench_accuracy_tsv(output.stream, diagram);
     TRY(mf_output_commit(&output));
-    if (mf_figures_draw_table(run->options->output, "accuracy") != STATUS_OK && !run->common->quiet)
-        fprintf(stderr, "warning: %s\n", mf_status_message());
+    if (mf_figures_draw_table(run->options->output, "accuracy") != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
     return STATUS_OK;
 }
 
@@ -308,7 +308,8 @@ enum status mf_bench_accuracy(const char *file, const struct run_options *common
     run->common = common;
     run->options = options;
     run->progress = mf_progress_begin(common->quiet, NULL);
-    run->progress.quiet |= !run->progress.terminal; // nothing but results goes into a pipe
+    if (!run->progress.terminal)
+        run->progress.quiet = RUN_SAYS_NOTHING; // nothing but results goes into a pipe
     status = carry_out(run, file);
 done:
     if (run) {

@@ -307,9 +307,8 @@ static enum status write_table(const struct run *run) {
                 write_rows(run, map, method, output.stream);
             }
     TRY(mf_output_commit(&output));
-    if (mf_figures_draw_table(run->options->output, "stability") != STATUS_OK &&
-        !run->common->quiet)
-        fprintf(stderr, "warning: %s\n", mf_status_message());
+    if (mf_figures_draw_table(run->options->output, "stability") != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
     return STATUS_OK;
 }
 
@@ -347,7 +346,8 @@ enum status mf_bench_stability(const char *file, const struct run_options *commo
     run->common = common;
     run->options = options;
     run->progress = mf_progress_begin(common->quiet, NULL);
-    run->progress.quiet |= !run->progress.terminal; // nothing but results goes into a pipe
+    if (!run->progress.terminal)
+        run->progress.quiet = RUN_SAYS_NOTHING; // nothing but results goes into a pipe
     status = carry_out(run, file);
 done:
     for (int row = 0; run && row < ROWS; row++) {
