@@ -2,6 +2,7 @@
 #include "observe/thermodynamics.h"
 
 #include "dynamics/respa.h"
+#include "forces/molecules.h"
 
 #include <math.h>
 
@@ -57,10 +58,13 @@ static double response(const struct fluctuations *f, int a, double temperature, 
            temperature;
 }
 
-/// Whether the series are of the whole U: all that acts knows its Laplacian.
+/// Whether the series are of the whole U, as all that acts knows its Laplacian, and a step is short
+/// for all of it. It is not for bonds, whose (Ω Δt)² is near 1: of trimers with 0.8 a step makes
+/// 0.048(5) of the pressure, and 0.020(3) is told.
 static bool is_whole(const struct simulation_setup *setup) {
     for (int k = 0; k < setup->interactions; k++)
-        if (setup->interaction[k].kind->laplacian == NULL)
+        if (setup->interaction[k].kind->laplacian == NULL ||
+            setup->interaction[k].kind == &mf_molecules)
             return false;
     return true;
 }
