@@ -352,40 +352,6 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) {
                                                          .sums = &simulation->sums});
 }
 
-static struct interaction_pass potentials_alone(const struct simulation *simulation,
-                                                struct particles *particles) {
-    return (struct interaction_pass){.law = &simulation->law,
-                                     .particles = particles,
-                                     .neighbours = &simulation->neighbours,
-                                     .step = simulation->step,
-                                     .conservative = true,
-                                     .wants = PAIR_FORCES};
-}
-
-enum status mf_simulation_interaction_forces(const struct simulation *simulation,
-                                             bool (*wanted)(const struct interaction *kind),
-                                             double *const force[3]) {
-    struct particles elsewhere = simulation->particles;
-    for (int d = 0; d < elsewhere.box.dimensions; d++)
-        elsewhere.force[d] = force[d];
-    const struct interaction_pass pass = potentials_alone(simulation, &elsewhere);
-    for (int k = 1; k < simulation->interactions; k++)
-        if (wanted(simulation->interaction[k].choice.kind))
-            TRY(apply(&simulation->interaction[k], &pass));
-    return STATUS_OK;
-}
-
-enum status mf_simulation_interaction_laplacian(const struct simulation *simulation, double *sum) {
-    struct particles particles = simulation->particles;
-    const struct interaction_pass pass = potentials_alone(simulation, &particles);
-    for (int k = 1; k < simulation->interactions; k++) {
-        const struct interaction_use *use = &simulation->interaction[k];
-        if (use->choice.kind->laplacian)
-            TRY(use->choice.kind->laplacian(use->choice.parameters, use->state, &pass, sum));
-    }
-    return STATUS_OK;
-}
-
 /// Σ m v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked
 /// for its velocities relative to the mean.
 static enum status check_stable(const struct simulation *simulation) {

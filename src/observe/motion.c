@@ -420,9 +420,8 @@ enum status mf_motion_table(const struct motion *motion, double **columns) {
 }
 
 double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary) {
-    const double error = summary->green_kubo_error;
-    return hypot(hypot(isnan(error) ? 0 : error, summary->green_kubo_sampling),
-                 summary->green_kubo_truncation);
+    const double error = isnan(summary->green_kubo_error) ? 0 : summary->green_kubo_error;
+    return hypot(hypot(error, summary->green_kubo_sampling), summary->green_kubo_truncation);
 }
 
 bool mf_motion_is_coarse(const struct motion_summary *s) {

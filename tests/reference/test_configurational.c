@@ -119,7 +119,10 @@ static void test_laplacian_of_local_densities_is_the_divergence_of_their_forces(
         for (int kind = 0; kind < 2; kind++) {
             struct many_bodies many;
             struct simulation simulation;
-            (kind == 0 ? many_bodies_mixture : many_bodies_dpd)(&many, dimensions, 90);
+            if (kind == 0)
+                many_bodies_mixture(&many, dimensions, 90);
+            else
+                many_bodies_dpd(&many, dimensions, 90);
             many.fluid.setup.precision = PAIR_DOUBLE;
             many.fluid.setup.placement.jitter = 0.5;
             assert_ok(mf_simulation_init(&simulation, &many.fluid.setup, NULL));
