@@ -95,7 +95,7 @@ enum { MAX_VALUES = 64 };
 static double error_of_values(const double *values, size_t length, size_t chains) {
     const size_t n = length * chains;
     if (n < 2)
-        return 0;
+        return NAN;
     const double variance = describe(values, length, chains).variance;
     if (!(variance > 0))
         return variance;

@@ -37,7 +37,7 @@ double mf_statistics_standard_error(const struct running_mean *running);
 double mf_statistics_inefficiency(const double *values, size_t length, size_t chains,
                                   size_t numbers);
 
-/// Standard error of the mean of one such number; 0 for fewer than two values:
+/// Standard error of the mean of one such number; NaN, not known, for fewer than two values:
 ///   error² = Γ(0)/n times the inefficiency.
 ///
 /// Of more than 64 values it is that of the means of 64 blocks if that is smaller: where values

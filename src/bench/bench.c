@@ -246,7 +246,8 @@ enum status mf_bench_engine(const char *const *files, size_t count,
                             const struct run_options *common, const struct bench_options *options) {
     struct run run = {.common = common, .options = options};
     run.progress = mf_progress_begin(common->quiet, NULL);
-    run.progress.quiet |= !run.progress.terminal; // nothing but results goes into a pipe
+    if (!run.progress.terminal)
+        run.progress.quiet = RUN_SAYS_NOTHING; // nothing but results goes into a pipe
     enum status status = prepare(&run, files, count);
     if (status == STATUS_OK)
         status = time_to_file(&run);

@@ -73,6 +73,7 @@ static enum status parse_time_steps(struct run *run, const char *text) {
 static enum status choose(struct run *run) {
     const struct bench_accuracy_options *options = run->options;
     const struct simulation_setup *setup = &run->scene.scene.setup;
+    TRY(mf_bench_point_check(setup, run->scene.name, "accuracy"));
     run->suitable_count = mf_bench_methods(setup, run->suitable);
     TRY(mf_bench_methods_listed(run->suitable, run->suitable_count, options->integrators,
                                 run->methods, &run->method_count));
@@ -234,8 +235,8 @@ static enum status write_table(struct run *run, const struct bench_diagram *diag
     TRY(mf_output_open(&output, run->options->output));
     mf_bench_accuracy_tsv(output.stream, diagram);
     TRY(mf_output_commit(&output));
-    if (mf_figures_draw_table(run->options->output, "accuracy") != STATUS_OK && !run->common->quiet)
-        fprintf(stderr, "warning: %s\n", mf_status_message());
+    if (mf_figures_draw_table(run->options->output, "accuracy") != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
     return STATUS_OK;
 }
 
@@ -307,7 +308,8 @@ enum status mf_bench_accuracy(const char *file, const struct run_options *common
     run->common = common;
     run->options = options;
     run->progress = mf_progress_begin(common->quiet, NULL);
-    run->progress.quiet |= !run->progress.terminal; // nothing but results goes into a pipe
+    if (!run->progress.terminal)
+        run->progress.quiet = RUN_SAYS_NOTHING; // nothing but results goes into a pipe
     status = carry_out(run, file);
 done:
     if (run) {

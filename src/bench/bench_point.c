@@ -52,6 +52,22 @@ static void add_inner_steps(struct bench_method *methods, size_t *count,
              setup->integrator->name);
 }
 
+enum status mf_bench_point_check(const struct simulation_setup *setup, const char *scene,
+                                 const char *word) {
+    if (!simulation_has_velocities(setup) || setup->integrator->events ||
+        setup->integrator->solvent_particles)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: bench %s wants particles with velocities and forces, which "
+                              "\"%s\" has not",
+                              scene, word, setup->integrator->name);
+    if (setup->potential == NULL && setup->omega == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: bench %s wants \"conservative\" or \"dissipative\": it looks at "
+                              "pairs as far as these reach",
+                              scene, word);
+    return STATUS_OK;
+}
+
 size_t mf_bench_methods(const struct simulation_setup *setup, struct bench_method *methods) {
     size_t count = 0;
     for (size_t k = 0; mf_integrator_list[k] && count + 3 <= BENCH_MAX_METHODS; k++) {

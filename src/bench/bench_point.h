@@ -17,6 +17,12 @@ struct bench_method {
 
 enum { BENCH_MAX_METHODS = 16, BENCH_MAX_BINS = 4096 };
 
+/// Whether integrators can be exchanged in a scene: its particles have velocities, and forces of
+/// pairs. Fails: BAD_INPUT, saying what `bench` and this word want. Tested:
+/// cli/test_bench_accuracy.
+enum status mf_bench_point_check(const struct simulation_setup *setup, const char *scene,
+                                 const char *word) MUST_USE;
+
 /// Integrators that suit a scene: those with friction for a scene with ω, dpd-verlet with two λ
 /// and, if the scene has them, with its inner steps, and those without for one without. Returns how
 /// many. Tested: test_bench_point.

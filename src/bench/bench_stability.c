@@ -96,17 +96,12 @@ static enum status read_scene(struct run *run, const char *file) {
 
 static enum status check_scene(const struct run *run) {
     const struct simulation_setup *setup = &run->scene.scene.setup;
-    if (!simulation_has_velocities(setup) || setup->integrator->events ||
-        setup->integrator->solvent_particles)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: bench stability wants particles with velocities and forces, "
-                              "which \"%s\" has not",
-                              run->scene.name, setup->integrator->name);
+    TRY(mf_bench_point_check(setup, run->scene.name, "stability"));
     if (setup->potential == NULL)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: bench stability wants \"conservative\": without a potential no "
-                              "time step is too large",
-                              run->scene.name);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: bench stability wants \"conservative\", whose strength it varies",
+            run->scene.name);
     return STATUS_OK;
 }
 
@@ -312,9 +307,8 @@ static enum status write_table(const struct run *run) {
                 write_rows(run, map, method, output.stream);
             }
     TRY(mf_output_commit(&output));
-    if (mf_figures_draw_table(run->options->output, "stability") != STATUS_OK &&
-        !run->common->quiet)
-        fprintf(stderr, "warning: %s\n", mf_status_message());
+    if (mf_figures_draw_table(run->options->output, "stability") != STATUS_OK)
+        fprintf(stderr, "mesofit: warning: %s\n", mf_status_message());
     return STATUS_OK;
 }
 
@@ -352,7 +346,8 @@ enum status mf_bench_stability(const char *file, const struct run_options *commo
     run->common = common;
     run->options = options;
     run->progress = mf_progress_begin(common->quiet, NULL);
-    run->progress.quiet |= !run->progress.terminal; // nothing but results goes into a pipe
+    if (!run->progress.terminal)
+        run->progress.quiet = RUN_SAYS_NOTHING; // nothing but results goes into a pipe
     status = carry_out(run, file);
 done:
     for (int row = 0; run && row < ROWS; row++) {

@@ -19,7 +19,7 @@ const struct command_option mf_command_common[] = {
     {"--seed", "N", "seed, instead of the file's"},
     {"--resume", NULL, "continue an interrupted run in its folder"},
     {"--force", NULL, "replace a fit, an unfinished run, changed files"},
-    {"--quiet", NULL, "no progress"},
+    {"--quiet", NULL, "no progress, warnings alone"},
     {"--help", NULL, "summary, after a command of that one"},
     {"--version", NULL, "version"},
     {NULL, NULL, NULL},
@@ -109,7 +109,7 @@ static enum status parse_option(const struct command *command, const char *word,
         } else if (strcmp(word, "--force") == 0) {
             options->force = true;
         } else if (strcmp(word, "--quiet") == 0) {
-            options->quiet = true;
+            options->quiet = RUN_WARNS;
         } else {
             return fail_unknown_option(command, word);
         }

@@ -34,7 +34,7 @@ static const struct command_option options[] = {
 static enum status run_shared(const char *file, const struct command_line *line) {
     struct run_options own = line->options;
     TRY(mf_ranks_begin());
-    own.quiet = own.quiet || !ranks_lead();
+    own.quiet = ranks_lead() ? own.quiet : RUN_SAYS_NOTHING;
     const enum status status =
         line->own[LIVE] && mf_ranks_count() > 1
             ? mf_status_fail(STATUS_BAD_INPUT, "--live is for a fit in one process; progress.json "

@@ -3,11 +3,12 @@
 
 #include "curves/formula.h"
 
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-void mf_fit_choice_note(struct fit_choice *c, const char *format, ...) {
+void mf_fit_choice_note(const struct fit_choice *c, const char *format, ...) {
     va_list arguments;
     if (c->choices->count == FIT_MAX_CHOICES)
         return;
@@ -39,8 +40,9 @@ const char *mf_fit_choice_text(const struct fit_choice *choice, const char *unit
     const struct units *units = &choice->read->scene.units;
     char name[UNITS_NAME_SIZE];
     const struct units *physical = units->system == UNITS_REDUCED ? NULL : units;
-    snprintf(text, FIT_CHOICE_TEXT_SIZE, "%.4g %s", value * mf_units_factor(physical, unit),
-             mf_units_name(physical, unit, name));
+    mf_units_name(physical, unit, name);
+    snprintf(text, FIT_CHOICE_TEXT_SIZE, "%.4g%s%s", value * mf_units_factor(physical, unit),
+             name[0] ? " " : "", name);
     return text;
 }
 
@@ -78,6 +80,18 @@ enum status mf_fit_choice_give_number(const struct json_object *root, const char
     return insert(writer, root);
 }
 
+/// The nearest number that a file may have there: a choice that the reader would refuse is none.
+static double nearest_allowed(const struct fit_choice *choice, const char *path,
+                              const struct field *field, double value) {
+    const double allowed = fmin(fmax(value, field->minimum), field->maximum);
+    char wanted[FIT_CHOICE_TEXT_SIZE], text[FIT_CHOICE_TEXT_SIZE];
+    if (allowed != value)
+        mf_fit_choice_note(choice, "%s.%s: %s, as near as it may be to %s", path, field->name,
+                           mf_fit_choice_text(choice, field->unit, allowed, text),
+                           mf_fit_choice_text(choice, field->unit, value, wanted));
+    return allowed;
+}
+
 enum status mf_fit_choice_give(const struct fit_choice *choice, const char *path,
                                const struct field *fields, const char *key, double value) {
     struct json_writer *writer = writer_at(path, &choice->read->scene.units);
@@ -86,6 +100,7 @@ enum status mf_fit_choice_give(const struct fit_choice *choice, const char *path
         fields++;
     own[0] = *fields;
     own[0].offset = 0;
+    value = nearest_allowed(choice, path, own, value);
     const int64_t whole = (int64_t)value;
     if (writer)
         mf_json_write_fields(writer, own,

@@ -29,7 +29,7 @@ struct fit_choice {
 };
 
 /// Keep a line for the person who reads what was chosen.
-void mf_fit_choice_note(struct fit_choice *choice, const char *format, ...)
+void mf_fit_choice_note(const struct fit_choice *choice, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
 /// "0.334 nm": a number of a reduced unit in the units of the file, "2.15 lambda" in a reduced one.
@@ -43,9 +43,9 @@ const char *mf_fit_choice_text(const struct fit_choice *choice, const char *unit
 bool mf_fit_choice_lacks(const struct json_object *root, const char *path, const char *key);
 struct json_object mf_fit_choice_object(const struct json_object *root, const char *path);
 
-/// Put in a text; a number without a unit; a number or whole number of a field table in its type
-/// and the units of the file; the friction weight σ (1 − r/cutoff); an object without members.
-/// Fails: NO_MEMORY.
+/// Put in a text; a number without a unit; a number or whole number of a field table in its type,
+/// its range, whatever a target asks for, and the units of the file (tested: test_fit_defaults);
+/// the friction weight σ (1 − r/cutoff); an object without members. Fails: NO_MEMORY.
 enum status mf_fit_choice_give_text(const struct json_object *root, const char *path,
                                     const char *key, const char *text) MUST_USE;
 enum status mf_fit_choice_give_number(const struct json_object *root, const char *path,

@@ -5,14 +5,25 @@
 #include "base/simd.h"
 #include "dynamics/simulation.h"
 
+static bool is_fast(const struct interaction *kind) {
+    return !kind->finds_pairs;
+}
+
+static bool has_fast(const struct simulation_setup *setup) {
+    for (int k = 0; k < setup->interactions; k++)
+        if (is_fast(setup->interaction[k].kind))
+            return true;
+    return false;
+}
+
 enum status mf_respa_init(struct respa *respa, const struct simulation *simulation,
                           int64_t inner_steps) {
     if (inner_steps <= 1)
         return STATUS_OK;
-    if (simulation->setup.interactions == 0)
+    if (!has_fast(&simulation->setup))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "dynamics.inner_steps: only bonds, angles, dihedrals and "
-                              "interactions use them, and the scene has none; leave it out");
+                              "dynamics.inner_steps: only bonds, angles, dihedrals and forces on "
+                              "single beads use them, and the scene has none; leave it out");
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
         TRY_ARRAY(respa->fast[d], simulation->particles.count);
     return STATUS_OK;
@@ -27,7 +38,7 @@ void mf_respa_clear(void *state) {
 enum status mf_respa_find(struct respa *respa, const struct simulation *simulation) {
     for (int d = 0; d < simulation->setup.box.dimensions; d++)
         memset(respa->fast[d], 0, simulation->particles.count * sizeof *respa->fast[d]);
-    return mf_simulation_interaction_forces(simulation, respa->fast);
+    return mf_simulation_interaction_forces(simulation, is_fast, respa->fast);
 }
 
 /// A kick of all particles.

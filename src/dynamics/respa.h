@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Velocity Verlet with shorter steps for the forces beside the pairs, as those of bonds.
+/// @file Velocity Verlet with shorter steps for the forces of bonds and those on single beads.
 ///
-/// The impulses of the pairs act once a step, and between them the others move the particles by
-/// steps of their own (reversible reference system propagator: M. Tuckerman, B. J. Berne and G. J.
-/// Martyna, J. Chem. Phys. 97, 1990 (1992), eq. 2.20). It is reversible and keeps volumes in phase
-/// space, as a proposal of hybrid Monte Carlo must. A step must stay well below half a period of
-/// the fastest bond, where the impulses of the pairs resonate with it. Friction and noise of pairs
-/// are impulses of theirs.
+/// The impulses of beads that find each other, pairs and energies of local densities, act once a
+/// step, and between them the others move the particles by steps of their own (reversible reference
+/// system propagator: M. Tuckerman, B. J. Berne and G. J. Martyna, J. Chem. Phys. 97, 1990 (1992),
+/// eq. 2.20). It is reversible and keeps volumes in phase space, as a proposal of hybrid Monte
+/// Carlo must. A step must stay well below half a period of the fastest bond, where the impulses of
+/// the pairs resonate with it. Friction and noise of pairs are impulses of theirs.
 #pragma once
 
 #include "dynamics/integrator.h"
 
 /// What an integrator that does so keeps.
 struct respa {
-    double *fast[3]; ///< forces beside the pairs, shape [particles]
+    double *fast[3]; ///< forces of what takes the inner steps, shape [particles]
 };
 
 /// Parameters of integrators that have no others.
@@ -30,7 +30,7 @@ struct respa_parameters {
     }
 
 /// Make room, if there is more than one inner step; else nothing.
-/// Fails: BAD_INPUT if there is nothing beside the pairs; NO_MEMORY.
+/// Fails: BAD_INPUT if nothing takes them; NO_MEMORY.
 enum status mf_respa_init(struct respa *respa, const struct simulation *simulation,
                           int64_t inner_steps) MUST_USE;
 void mf_respa_clear(void *respa);

@@ -352,22 +352,6 @@ enum status mf_simulation_compute_potential(struct simulation *simulation) {
                                                          .sums = &simulation->sums});
 }
 
-enum status mf_simulation_interaction_forces(const struct simulation *simulation,
-                                             double *const force[3]) {
-    struct particles elsewhere = simulation->particles;
-    for (int d = 0; d < elsewhere.box.dimensions; d++)
-        elsewhere.force[d] = force[d];
-    const struct interaction_pass pass = {.law = &simulation->law,
-                                          .particles = &elsewhere,
-                                          .neighbours = &simulation->neighbours,
-                                          .step = simulation->step,
-                                          .conservative = true,
-                                          .wants = PAIR_FORCES};
-    for (int k = 1; k < simulation->interactions; k++)
-        TRY(apply(&simulation->interaction[k], &pass));
-    return STATUS_OK;
-}
-
 /// Σ m v² tells at once of NaN, overflow and a runaway temperature; what drifts as a whole is asked
 /// for its velocities relative to the mean.
 static enum status check_stable(const struct simulation *simulation) {

@@ -98,10 +98,16 @@ void mf_simulation_clear(struct simulation *simulation);
 enum status mf_simulation_add_interaction(struct simulation *simulation,
                                           const struct interaction_choice *choice) MUST_USE;
 
-/// Forces of the potentials beside the pairs, added to `force`, shape [dimensions][count].
-/// Fails: as the interactions.
+/// Forces of the potentials beside the pairs that are `wanted`, added to `force`, shape
+/// [dimensions][count]. Fails: as the interactions.
 enum status mf_simulation_interaction_forces(const struct simulation *simulation,
+                                             bool (*wanted)(const struct interaction *kind),
                                              double *const force[3]) MUST_USE;
+
+/// Σ ∇²U of those that know it, after their forces at the same positions, added to `sum`
+/// [k_B T_0/λ²]. Fails: NO_MEMORY.
+enum status mf_simulation_interaction_laplacian(const struct simulation *simulation,
+                                                double *sum) MUST_USE;
 
 /// Advance by `steps` steps.
 /// Fails: UNSTABLE with the step and the largest force in the message as soon as a velocity is not

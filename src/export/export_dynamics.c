@@ -105,24 +105,30 @@ static void print_change(FILE *stream, const struct export_number *here,
                 change > 0 ? "higher" : "lower");
 }
 
+/// D of the result that its folder has is the only one: of what runs there it is told how much
+/// higher the MSD's slope is, as that of the times of two short simulations may be another one.
 static void print_measured(const struct export_job *job, const char *prefix, FILE *stream) {
     const struct export_projection *p = &job->projection;
     const struct export_units *units = &job->units;
     const struct export_number *own = &p->result.diffusion, *there = &p->projected.diffusion;
+    const struct export_number *known = &job->model->diffusion;
     const double diffusion = units->length * units->length / units->time;
-    const bool both = isfinite(own->value);
+    const bool both = isfinite(own->value), has_own = isfinite(known->value);
     fprintf(stream, "%sD          ", prefix);
-    if (both)
-        print_number(stream, own, diffusion);
-    fprintf(stream, both ? " %s^2/%s of the result, " : "", units->length_name, units->time_name);
-    print_number(stream, there, diffusion);
-    fprintf(stream, " %s^2/%s %s", units->length_name, units->time_name,
-            job->runs == EXPORT_BATH ? "in that bath" : "by that friction");
+    if (both || has_own) {
+        print_number(stream, has_own ? known : own, diffusion);
+        fprintf(stream, " %s^2/%s of the result, ", units->length_name, units->time_name);
+    }
+    if (!both || !has_own) {
+        print_number(stream, there, diffusion);
+        fprintf(stream, " %s^2/%s ", units->length_name, units->time_name);
+    }
+    fprintf(stream, "%s", job->runs == EXPORT_BATH ? "in that bath" : "by that friction");
     if (both)
         print_change(stream, own, there);
     const double window = units->time * p->interval * (EXPORT_TIMES - 1);
     fprintf(stream,
-            " (slope of the MSD from %.3g to %.3g %s, simulated by mesofit for %.3g %s%s)\n",
+            " (by slopes of the MSD from %.3g to %.3g %s, simulated by mesofit for %.3g %s%s)\n",
             window / 2, window, units->time_name,
             units->time * (double)p->steps * job->model->setup.time_step, units->time_name,
             both ? " each" : "");
@@ -167,11 +173,10 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
     else if (job->unmeasured[0])
         fprintf(stream, "%sD          not measured of what runs there: %s\n", prefix,
                 job->unmeasured);
-    if (isfinite(job->model->diffusion.value)) {
-        fprintf(stream, "%ssummary    D ", prefix);
+    if (!job->measured && isfinite(job->model->diffusion.value)) {
+        fprintf(stream, "%sD          ", prefix);
         print_number(stream, &job->model->diffusion, diffusion);
-        fprintf(stream, " %s^2/%s of the result in its summary.json\n", units->length_name,
-                units->time_name);
+        fprintf(stream, " %s^2/%s of the result\n", units->length_name, units->time_name);
     }
     print_instead(job, prefix, stream);
 }
@@ -204,8 +209,9 @@ static void print_cost(const struct export_job *job, FILE *stream) {
     const struct export_measured *const both[] = {&p->result, &p->projected};
     static const char *const names[] = {"omega of the result", "power law          "};
     for (int k = 0; k < 2; k++)
-        fprintf(stream, "    %s: temperature %.6g +- %.2g %s, D %.4g +- %.2g %s^2/%s\n", names[k],
-                units->temperature * both[k]->temperature.value,
+        fprintf(stream,
+                "    %s: temperature %.6g +- %.2g %s, slope of the MSD %.4g +- %.2g %s^2/%s\n",
+                names[k], units->temperature * both[k]->temperature.value,
                 units->temperature * both[k]->temperature.error, units->temperature_name,
                 diffusion * both[k]->diffusion.value, diffusion * both[k]->diffusion.error,
                 units->length_name, units->time_name);

@@ -271,10 +271,12 @@ static double step_of_bonds(const struct export_model *model) {
                     mf_hybrid_step_fastest(model->molecules, model->setup.temperature));
 }
 
-/// The step of the result, shortened if its configurational temperature, whose error is as Δt²,
-/// shows that it is long.
+/// The step of the result, shortened if its configurational temperature, which is off as Δt²,
+/// shows that it is long: by what is beyond two errors, as the rest may be chance.
 static double safe_step(const struct export_model *model) {
-    const double wrong = fabs(model->configurational / model->setup.temperature - 1);
+    const struct export_number *found = &model->configurational;
+    const double wrong = (fabs(found->value - model->setup.temperature) - 2 * found->error) /
+                         model->setup.temperature; // NaN: not known
     const double step = model->setup.time_step;
     return fmin(wrong > allowed ? step * sqrt(allowed / wrong) : step, step_of_bonds(model));
 }

@@ -119,7 +119,8 @@ static enum status read_used(struct reading *reading) {
 static const struct field summary_fields[] = {
     NUMBER("temperature", temperature.value, "T_0"),
     NUMBER("temperature_error", temperature.error, "T_0"),
-    NUMBER("temperature_configurational", configurational, "T_0"),
+    NUMBER("temperature_configurational", configurational.value, "T_0"),
+    NUMBER("temperature_configurational_error", configurational.error, "T_0"),
     NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
     NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
     NUMBER("diffusion", diffusion.value, "lambda^2/tau"),
@@ -389,7 +390,7 @@ static void name_types(struct export_model *model) {
 enum status mf_export_model_read(struct export_model *model, const char *folder) {
     struct reading reading = {.model = model};
     *model = (struct export_model){
-        .temperature = {NAN, NAN}, .pressure = {NAN, NAN}, .configurational = NAN};
+        .temperature = {NAN, NAN}, .pressure = {NAN, NAN}, .configurational = {NAN, NAN}};
     snprintf(model->folder, sizeof model->folder, "%s", folder);
     TRY(check_folder(model));
     TRY(read_used(&reading));

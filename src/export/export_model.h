@@ -40,7 +40,7 @@ struct export_model {
     double rdf_range;                    ///< where they end [λ]
     struct export_number temperature, pressure; ///< of the result
     struct export_number diffusion;             ///< D of it, if it was measured
-    double configurational;                     ///< its configurational temperature; or NAN
+    struct export_number configurational;       ///< its configurational temperature
     double verified_step;                       ///< time step of the verification; or NAN [τ]
     char warning[256]; ///< what a person should know of the result; "" if nothing
 };

@@ -181,6 +181,64 @@ void mf_bonded_add(const struct bonded_terms *terms, struct bonded_beads *beads,
                   terms->count - t < TERMS ? terms->count - t : TERMS, beads, sums);
 }
 
+// Laplacian ---------------------------------------------------------------------------------------
+
+/// A step of differences [λ]: forces are exact to 1e-15 of themselves.
+static const double apart = 1e-5;
+
+/// A place number `n` of a term's: a coordinate of one of its beads, forth or back.
+struct shift {
+    int bead, axis;
+    double by;
+};
+
+static struct shift shift_of(int n, int dimensions) {
+    return (struct shift){n / 2 / dimensions, n / 2 % dimensions, n % 2 ? apart : -apart};
+}
+
+/// One term of one lane, whose shifted copies are the lanes.
+static double laplacian_of(const struct bonded_terms *terms, const struct bonded_beads *beads,
+                           const int *bead, int lane) {
+    static const int own[BONDED_MAX_TERM_BEADS] = {0, 1, 2, 3};
+    const int count = mf_bonded_kinds[terms->order]->beads, dimensions = beads->box->dimensions;
+    const int shifts = 2 * count * dimensions;
+    struct bonded_terms one = *terms;
+    struct bonded_beads copies;
+    struct bonded_sums sums = {0};
+    double sum = 0;
+    one.count = 1;
+    one.bead = own;
+    one.sums = one.transfer = false;
+    copies.box = beads->box;
+    for (int first = 0; first < shifts; first += WIDTH) {
+        one.lanes = shifts - first < WIDTH ? shifts - first : WIDTH;
+        memset(copies.force, 0, (size_t)count * sizeof *copies.force);
+        for (int b = 0; b < count; b++)
+            for (int d = 0; d < 3; d++)
+                for (int l = 0; l < WIDTH; l++)
+                    copies.position[b][d][l] = beads->position[bead[b]][d][lane];
+        for (int l = 0; l < one.lanes; l++) {
+            const struct shift shift = shift_of(first + l, dimensions);
+            copies.position[shift.bead][shift.axis][l] += shift.by;
+        }
+        mf_bonded_add(&one, &copies, &sums);
+        for (int l = 0; l < one.lanes; l++) {
+            const struct shift shift = shift_of(first + l, dimensions);
+            sum -= copies.force[shift.bead][shift.axis][l] / (2 * shift.by);
+        }
+    }
+    return sum;
+}
+
+double mf_bonded_laplacian(const struct bonded_terms *terms, const struct bonded_beads *beads) {
+    double sum = 0;
+    for (int t = 0; t < terms->count; t++)
+        for (int lane = 0; lane < terms->lanes; lane++)
+            sum += laplacian_of(terms, beads,
+                                terms->bead + t * mf_bonded_kinds[terms->order]->beads, lane);
+    return sum;
+}
+
 // Measuring ---------------------------------------------------------------------------------------
 
 /// Terms are the lanes of one.

@@ -62,6 +62,10 @@ void mf_bonded_give(const struct bonded_beads *beads, struct particles *particle
 void mf_bonded_give_sums(const struct bonded_beads *beads, struct particles *particles,
                          const int32_t *place, int count, int used);
 
+/// Σ ∇²U of the beads of all terms, in the lanes that count [k_B T_0/λ²], by differences of their
+/// forces. Tested: test_configurational.
+double mf_bonded_laplacian(const struct bonded_terms *terms, const struct bonded_beads *beads);
+
 /// Lengths [λ] or angles [rad] of terms of one kind at the present positions, shape [count]: what
 /// the laws are given.
 /// @param[in] place  shape [count, beads of a term]: of the particles

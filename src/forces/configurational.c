@@ -125,8 +125,8 @@ static void add_stretch(struct sums *sums, const struct composition *composition
 
 enum status mf_configurational(const struct table *potential, const struct composition *composition,
                                double temperature, const struct particles *particles,
-                               const struct neighbours *neighbours, double *const *beside,
-                               double *squares, double *laplacian) {
+                               const struct neighbours *neighbours, double *const *known,
+                               double *const *others, double *squares, double *laplacian) {
     OWNED double *force = NULL;
     TRY_ARRAY(force, 3 * particles->count);
     struct sums sums = {potential, particles, temperature, force, {0}, 0};
@@ -142,8 +142,10 @@ enum status mf_configurational(const struct table *potential, const struct compo
     *squares = 0;
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
-    for (int d = 0; d < particles->box.dimensions && beside; d++)
-        for (size_t k = 0; k < particles->count; k++)
-            *squares += force[3 * k + (size_t)d] * beside[d][k];
+    for (int d = 0; d < particles->box.dimensions && known; d++)
+        for (size_t k = 0; k < particles->count; k++) {
+            const double own = force[3 * k + (size_t)d];
+            *squares += (own + known[d][k]) * (own + known[d][k] + others[d][k]) - own * own;
+        }
     return STATUS_OK;
 }

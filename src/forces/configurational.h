@@ -8,5 +8,5 @@
 /// NO_MEMORY. Tested: test_configurational, which has that one for its slow twin.
 enum status mf_configurational(const struct table *potential, const struct composition *composition,
                                double temperature, const struct particles *particles,
-                               const struct neighbours *neighbours, double *const *beside,
-                               double *squares, double *laplacian) MUST_USE;
+                               const struct neighbours *neighbours, double *const *known,
+                               double *const *others, double *squares, double *laplacian) MUST_USE;

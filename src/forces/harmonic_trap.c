@@ -41,6 +41,15 @@ static enum status add(const void *parameters, void *state, const struct interac
     return STATUS_OK;
 }
 
+static enum status laplacian(const void *parameters, void *state,
+                             const struct interaction_pass *pass, double *sum) {
+    const struct parameters *own = parameters;
+    (void)state;
+    for (int d = 0; d < pass->particles->box.dimensions; d++)
+        *sum += (double)pass->particles->count * own->stiffness[d];
+    return STATUS_OK;
+}
+
 static const struct field fields[] = {
     {"stiffness", FIELD_LENGTHS, offsetof(struct parameters, stiffness), .required = true,
      .minimum = 0, .maximum = DBL_MAX, .unit = "k_B T_0/lambda^2",
@@ -58,5 +67,6 @@ const struct interaction mf_harmonic_trap = {
     .parameters_size = sizeof(struct parameters),
     .cost = 2,
     .add = add,
+    .laplacian = laplacian,
     .begin = begin,
 };

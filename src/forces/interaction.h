@@ -37,6 +37,9 @@ struct interaction {
     /// Acts before the pairs in a pass of both, and then adds its forces to particles->kernel_force
     /// instead: the pairs hand over the sums of all.
     bool before_pairs;
+    /// Is of beads that find each other, by the list or by particles->fraction: both are of the
+    /// last step's end, and mean nothing in between (dynamics/respa.h).
+    bool finds_pairs;
     /// Force on each particle that drives it for ever, in a direction of its own [k_B T_0/λ]. NULL:
     /// none.
     double (*push)(const void *parameters);
@@ -49,6 +52,10 @@ struct interaction {
     /// Σ r·F [k_B T_0] to the sums. What pushes from outside has no virial: it is no part of the
     /// pressure. A step may take more than one pass, with the same number.
     enum status (*add)(const void *parameters, void *state, const struct interaction_pass *pass);
+    /// Add Σ_i ∇_i² U [k_B T_0/λ²] to `sum`, after a pass at the same positions. NULL: it is not
+    /// known. Tested: test_configurational.
+    enum status (*laplacian)(const void *parameters, void *state,
+                             const struct interaction_pass *pass, double *sum);
     /// List what of its state a checkpoint must keep; returns the number of spans, at most
     /// INTERACTION_SPANS. NULL: nothing.
     size_t (*spans)(void *state, struct memory_span *spans);
@@ -71,6 +78,10 @@ INTERACTIONS(INTERACTION_DECLARE)
 
 /// The same, NULL-terminated.
 extern const struct interaction *const mf_interaction_list[];
+
+/// The Laplacian of what pushes alike everywhere, or has no potential: none.
+enum status mf_interaction_no_laplacian(const void *parameters, void *state,
+                                        const struct interaction_pass *pass, double *sum);
 
 /// Φ and ω of the pairs, in one pass, which replaces the forces of the last step by the sums of the
 /// pair kernels: the first of every simulation's list. Its numbers are those of the pass.

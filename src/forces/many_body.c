@@ -208,6 +208,93 @@ static enum status add(const void *parameters, void *own, const struct interacti
     return STATUS_OK;
 }
 
+// Laplacian ---------------------------------------------------------------------------------------
+
+/// Of beads of a term, by place: Σ_j w' r̂, Σ_j w'² and Σ_j (w'' + (d − 1) w'/r) of their neighbours
+/// that count, shape [count, 3], [count], [count].
+struct spread {
+    double *gradient, *squares, *curvature;
+};
+
+/// w' and w'' at r. At the cutoff w' may end abruptly: a Dirac peak of w'', spread over a shell
+/// inside, as that of Φ is (reference_forces.h).
+static double curvature_at(const struct weight_table *weight, double r, double *slope) {
+    static const double shell = 0.01;
+    const double width = shell * weight_cutoff(weight);
+    double curvature, last;
+    mf_table_evaluate(&weight->table, fmax(0, r - weight->inner), NULL, slope, &curvature);
+    mf_table_evaluate(&weight->table, weight->table.cutoff * (1 - 1e-9), NULL, &last, NULL);
+    return (r < weight->inner ? 0 : curvature) -
+           (r > weight_cutoff(weight) - width ? last / width : 0);
+}
+
+static void add_neighbour(struct spread *spread, size_t i, const double r_ij[3], double r,
+                          double slope, double laplacian) {
+    for (int d = 0; d < 3; d++)
+        spread->gradient[3 * i + (size_t)d] += slope * r_ij[d] / r;
+    spread->squares[i] += slope * slope;
+    spread->curvature[i] += laplacian;
+}
+
+static void spread_pairs(const struct beads *beads, const struct neighbours *neighbours,
+                         struct spread *spread) {
+    const struct particles *particles = beads->particles;
+    const int dimensions = particles->box.dimensions;
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
+            const size_t j = (size_t)neighbours->list[k];
+            double r_ij[3] = {0}, r_ji[3], square = 0, slope;
+            for (int d = 0; d < dimensions; d++) {
+                r_ij[d] = box_nearest(particles->position[d][i] - particles->position[d][j],
+                                      particles->box.length[d]);
+                square += r_ij[d] * r_ij[d];
+            }
+            const double r = sqrt(square);
+            if (j == i || r >= weight_cutoff(beads->of->weight)) // j = i is what is left of a row
+                continue;
+            const double curvature = curvature_at(beads->of->weight, r, &slope);
+            const double laplacian = curvature + (dimensions - 1) * slope / r;
+            for (int d = 0; d < 3; d++)
+                r_ji[d] = -r_ij[d];
+            if (is_of(beads->term->neighbours, beads, j))
+                add_neighbour(spread, i, r_ij, r, slope, laplacian);
+            if (is_of(beads->term->neighbours, beads, i))
+                add_neighbour(spread, j, r_ji, r, slope, laplacian);
+        }
+}
+
+/// Σ_k ∇_k² f(ρ_i) = f'' Σ_k |∇_k ρ_i|² + f' Σ_k ∇_k² ρ_i, of k = i and its neighbours.
+static double laplacian_of(const struct beads *beads, const struct spread *spread, size_t i) {
+    static const double apart = 1e-5;
+    const struct density_energy *energy = &beads->term->energy;
+    const double density = beads->of->density[i];
+    double slope, above, below, square = spread->squares[i];
+    mf_density_energy_value(energy, density, &slope);
+    mf_density_energy_value(energy, density + apart, &above);
+    mf_density_energy_value(energy, density - apart, &below);
+    for (int d = 0; d < 3; d++)
+        square += pow(spread->gradient[3 * i + (size_t)d], 2);
+    return (above - below) / (2 * apart) * square + slope * 2 * spread->curvature[i];
+}
+
+static enum status laplacian(const void *parameters, void *own, const struct interaction_pass *pass,
+                             double *sum) {
+    const struct many_body_work *work = own;
+    const size_t count = pass->particles->count;
+    (void)parameters;
+    for (int t = 0; t < work->many_body->terms; t++) {
+        const struct beads beads = beads_of(work, pass->particles, t);
+        OWNED double *values = NULL;
+        TRY_ARRAY(values, 5 * count);
+        struct spread spread = {values, values + 3 * count, values + 4 * count};
+        spread_pairs(&beads, pass->neighbours, &spread);
+        for (size_t i = 0; i < count; i++)
+            if (is_of(beads.term->central, &beads, i))
+                *sum += laplacian_of(&beads, &spread, i);
+    }
+    return STATUS_OK;
+}
+
 static size_t spans(void *own, struct memory_span *spans) {
     struct many_body_work *work = own;
     spans[0] = (struct memory_span){work->extreme, sizeof work->extreme};
@@ -228,11 +315,13 @@ const struct interaction mf_many_body = {
     .parameters_size = sizeof(struct many_body),
     .state_size = sizeof(struct many_body_work),
     .cost = 120,
+    .finds_pairs = true,
     .range = range_of,
     .before_pairs = true,
     .begin = begin,
     .clear = clear,
     .join = join,
     .add = add,
+    .laplacian = laplacian,
     .spans = spans,
 };

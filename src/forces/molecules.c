@@ -105,6 +105,22 @@ struct sweep {
     struct bonded_sums sums[MOLECULES_MAX_BLOCKS];
 };
 
+/// The terms of a group in a bundle, whose beads begin at `bead`.
+static struct bonded_terms terms_of(const struct sweep *sweep,
+                                    const struct molecules_bundle *bundle, int order, int group,
+                                    const int *bead) {
+    return (struct bonded_terms){
+        .order = order,
+        .curve = &sweep->state->molecules->group[order][group].curve,
+        .group = group,
+        .count = bundle->motif->terms[order][group],
+        .bead = bead,
+        .lanes = bundle->lanes,
+        .sums = sweep->pass->wants == PAIR_FORCES_AND_SUMS,
+        .transfer = sweep->pass->law->transfer != NULL,
+    };
+}
+
 /// Add all terms of a bundle, group by group, to the forces of its beads.
 static void add_terms(const struct sweep *sweep, const struct molecules_bundle *bundle,
                       struct bonded_beads *beads, struct bonded_sums *sums) {
@@ -112,16 +128,7 @@ static void add_terms(const struct sweep *sweep, const struct molecules_bundle *
     const int *bead = bundle->motif->term_bead;
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
-            const struct bonded_terms terms = {
-                .order = order,
-                .curve = &molecules->group[order][g].curve,
-                .group = g,
-                .count = bundle->motif->terms[order][g],
-                .bead = bead,
-                .lanes = bundle->lanes,
-                .sums = sweep->pass->wants == PAIR_FORCES_AND_SUMS,
-                .transfer = sweep->pass->law->transfer != NULL,
-            };
+            const struct bonded_terms terms = terms_of(sweep, bundle, order, g, bead);
             mf_bonded_add(&terms, beads, sums);
             bead += terms.count * mf_bonded_kinds[order]->beads;
         }
@@ -186,6 +193,38 @@ static enum status add(const void *parameters, void *own, const struct interacti
     return check_broken(&sweep);
 }
 
+/// Each block by itself, so that the sum is the same for any number of threads.
+static void add_laplacians(void *context, size_t begin_block, size_t end_block) {
+    struct sweep *sweep = context;
+    const struct molecules_layout *layout = &sweep->state->layout;
+    const struct molecules *molecules = sweep->state->molecules;
+    struct bonded_beads beads;
+    for (size_t block = begin_block; block < end_block; block++)
+        for (size_t n = layout->start[block]; n < layout->start[block + 1]; n++) {
+            const struct molecules_bundle *bundle = &layout->bundle[n];
+            const int *bead = bundle->motif->term_bead;
+            mf_bonded_take(&beads, sweep->pass->particles,
+                           layout->place + bundle->row * BONDED_LANES, bundle->motif->beads);
+            for (int order = 0; order < BONDED_KINDS; order++)
+                for (int g = 0; g < molecules->groups[order]; g++) {
+                    const struct bonded_terms terms = terms_of(sweep, bundle, order, g, bead);
+                    sweep->sums[block].energy += mf_bonded_laplacian(&terms, &beads);
+                    bead += terms.count * mf_bonded_kinds[order]->beads;
+                }
+        }
+}
+
+static enum status laplacian(const void *parameters, void *own, const struct interaction_pass *pass,
+                             double *sum) {
+    struct sweep sweep = {.state = own, .pass = pass};
+    (void)parameters;
+    mf_parallel_for((size_t)sweep.state->layout.blocks, pass->particles->threads, add_laplacians,
+                    &sweep);
+    for (int block = 0; block < sweep.state->layout.blocks; block++)
+        *sum += sweep.sums[block].energy;
+    return STATUS_OK;
+}
+
 const struct interaction mf_molecules = {
     .name = "molecules",
     .summary = "bonds, angles and dihedrals",
@@ -195,4 +234,5 @@ const struct interaction mf_molecules = {
     .begin = begin,
     .clear = clear,
     .add = add,
+    .laplacian = laplacian,
 };

@@ -92,6 +92,8 @@ const struct interaction mf_polar_alignment = {
     .parameters_size = sizeof(struct parameters),
     .oriented = true,
     .cost = 15,
+    .finds_pairs = true,
     .range = range_of,
     .add = add,
+    .laplacian = mf_interaction_no_laplacian,
 };

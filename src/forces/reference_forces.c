@@ -58,8 +58,9 @@ double mf_reference_edge_laplacian(const struct table *potential, int pair, doub
 enum status mf_reference_configurational(const struct table *potential,
                                          const struct composition *composition, double temperature,
                                          const struct particles *particles,
-                                         const struct neighbours *neighbours, double *const *beside,
-                                         double *squares, double *laplacian) {
+                                         const struct neighbours *neighbours, double *const *known,
+                                         double *const *others, double *squares,
+                                         double *laplacian) {
     const int dimensions = particles->box.dimensions;
     OWNED double *force = NULL;
     double density[COMPOSITION_MAX_PAIRS] = {0}; // of each pair type
@@ -91,9 +92,11 @@ enum status mf_reference_configurational(const struct table *potential,
         *laplacian += mf_reference_edge_laplacian(potential, pair, density[pair]);
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
-    for (int d = 0; d < dimensions && beside; d++)
-        for (size_t k = 0; k < particles->count; k++)
-            *squares += force[3 * k + (size_t)d] * beside[d][k];
+    for (int d = 0; d < dimensions && known; d++)
+        for (size_t k = 0; k < particles->count; k++) {
+            const double own = force[3 * k + (size_t)d];
+            *squares += (own + known[d][k]) * (own + known[d][k] + others[d][k]) - own * own;
+        }
     return STATUS_OK;
 }
 

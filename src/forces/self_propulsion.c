@@ -57,4 +57,5 @@ const struct interaction mf_self_propulsion = {
     .push = push,
     .cost = 1,
     .add = add,
+    .laplacian = mf_interaction_no_laplacian,
 };

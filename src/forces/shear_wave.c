@@ -46,6 +46,7 @@ const struct interaction mf_shear_wave = {
     .cost = 12,
     .begin = begin,
     .add = add,
+    .laplacian = mf_interaction_no_laplacian,
 };
 
 const struct shear_wave_parameters *

@@ -98,6 +98,7 @@ const struct interaction mf_soft_discs = {
     .parameters_size = sizeof(struct parameters),
     .state_size = sizeof(struct state),
     .cost = 60,
+    .finds_pairs = true,
     .begin = begin,
     .clear = clear,
     .add = add,

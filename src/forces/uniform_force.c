@@ -39,4 +39,5 @@ const struct interaction mf_uniform_force = {
     .parameters_size = sizeof(struct parameters),
     .cost = 1,
     .add = add,
+    .laplacian = mf_interaction_no_laplacian,
 };

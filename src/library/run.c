@@ -130,7 +130,8 @@ static enum status carry_out(struct mesofit_run *run, size_t count, const char *
     struct command_line line = {0};
     TRY(mf_command_find(commands, words[0], &command));
     TRY(mf_command_parse(command, count - 1, words + 1, &line));
-    line.options.quiet = line.options.no_figures = true;
+    line.options.quiet = RUN_SAYS_NOTHING;
+    line.options.no_figures = true;
     line.options.stop = &run->stop;
     line.options.callers = callers;
     if (callers->count > 0 && command != &mf_command_simulate)

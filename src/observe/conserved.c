@@ -3,6 +3,7 @@
 // What dynamics without walls and thermostat keep: particles, momentum and energy, those of a
 // solvent among them, in time. Tested: cli/test_conserved.
 #include "base/memory.h"
+#include "dynamics/event_driven.h"
 #include "dynamics/solvent.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
@@ -27,16 +28,26 @@ static void clear(void *state) {
     mf_sample_series_clear(&((struct state *)state)->series);
 }
 
+/// The axes along which there are walls, a bit each: along others nothing can leave the box, and
+/// between two lists of pairs beads stand beyond its edge.
+static int walls_of(const struct simulation *simulation, const struct solvent *solvent) {
+    const struct event_driven *events = mf_event_driven_state(simulation);
+    if (solvent)
+        return solvent->parameters.walls == COLLISION_PLATES ? 1 << 1 : 0;
+    return events ? events->gas.walls : 0;
+}
+
 /// Add particles of one kind: how many are in the box, their momentum, energy, and Σ m |v|.
-static void add(double here[QUANTITIES], const struct box *box, double *const position[3],
-                double *const velocity[3], const double *mass, double usual, size_t count) {
+static void add(double here[QUANTITIES], const struct box *box, int walls,
+                double *const position[3], double *const velocity[3], const double *mass,
+                double usual, size_t count) {
     for (size_t k = 0; k < count; k++) {
         const double m = mass ? mass[k] : usual;
         double square = 0;
         bool inside = true;
         for (int d = 0; d < box->dimensions; d++) {
             const double x = position[d][k], v = velocity[d][k];
-            inside = inside && x >= 0 && x <= box->length[d];
+            inside = inside && (walls >> d & 1 ? x >= 0 && x <= box->length[d] : isfinite(x));
             here[MOMENTUM + d] += m * v;
             square += v * v;
         }
@@ -52,10 +63,11 @@ static enum status sample(void *state, struct simulation *simulation) {
     const struct particles *particles = &simulation->particles;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     here[ENERGY] = particles->count > 0 ? simulation->sums.energy : 0;
-    add(here, &particles->box, particles->position, particles->velocity,
+    const int walls = walls_of(simulation, solvent);
+    add(here, &particles->box, walls, particles->position, particles->velocity,
         particles_masses(particles), 1, particles->count);
     if (solvent)
-        add(here, &particles->box, solvent->position, solvent->velocity, NULL,
+        add(here, &particles->box, walls, solvent->position, solvent->velocity, NULL,
             solvent->parameters.mass, solvent->count);
     return mf_sample_series_add(&s->series, here);
 }

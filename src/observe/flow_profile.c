@@ -349,7 +349,7 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     if (!is_driven(state) || fabs(found.viscosity_error) <= max * fabs(found.viscosity))
         return STATUS_OK;
     return mf_status_fail(
-        STATUS_UNSTABLE,
+        STATUS_UNCONVERGED,
         "the viscosity is %.2g with an error of %.2g: the flow is not stationary, or hidden by "
         "noise; take a longer \"equilibration\" or more \"samples\"",
         found.viscosity, found.viscosity_error);

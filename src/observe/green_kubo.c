@@ -7,10 +7,6 @@
 
 enum { MAX_BLOCKS = 32, MAX_WINDOWS = 24, SHORTEST_WINDOW = 4 };
 
-/// The window that is taken is so many times doubled from the first one that agrees with the
-/// longer ones.
-enum { DOUBLINGS = 3 };
-
 enum status mf_green_kubo_init(struct green_kubo *green_kubo, size_t lags, size_t components,
                                size_t samples) {
     *green_kubo = (struct green_kubo){.lags = lags, .components = components};
@@ -156,11 +152,14 @@ struct green_kubo_summary mf_green_kubo_result(const struct green_kubo *green_ku
     if (blocks == 0)
         return (struct green_kubo_summary){.value = NAN, .error = NAN};
     const size_t chosen = choose(values, windows, blocks);
-    const size_t taken = chosen + DOUBLINGS < windows ? chosen + DOUBLINGS : windows - 1;
-    const struct estimate found = difference(values[taken], NULL, blocks);
     const bool reached = chosen + 1 < windows;
+    const size_t taken = reached ? chosen + 1 : chosen;
+    const struct estimate found = difference(values[taken], NULL, blocks);
+    const struct estimate hidden = taken + 1 < windows
+                                       ? difference(values[taken + 1], values[taken], blocks)
+                                       : (struct estimate){0};
     return (struct green_kubo_summary){.value = found.mean,
-                                       .error = found.error,
+                                       .error = hypot(found.error, 2 * hidden.error),
                                        .window = window[taken],
                                        .reached = reached || is_at_rest(values, windows, blocks),
                                        .blocks = (double)blocks};

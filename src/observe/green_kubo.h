@@ -12,10 +12,11 @@
 /// all longer windows within the standard errors of the differences: the rule of O. V. Lepskii,
 /// Theory Probab. Appl. 35, 454 (1991), in place of the threshold by eye of Y. Zhang, A. Otani and
 /// E. J. Maginn, J. Chem. Theory Comput. 11, 3537 (2015). That window agrees because the noise
-/// hides what may still come, and its own error is too small for that: taken is one eight times as
-/// long, or T. Of flows that decay with two or three times, whose last one has a third of the
-/// integral, the values lie 0.9 to 1.1 of their errors from the truth (rms); those of the first
-/// window itself 1.4 to 2.2, all of them low. Errors are of blocks of time.
+/// hides what may still come, and its own error is too small for that: taken is one twice as long,
+/// whose error has in it twice that of the next doubling, in which noise may hide as much. Of flows
+/// that decay with two or three times, whose last one has a third of the integral, the values lie
+/// 0.8 to 1.1 of their errors from the truth (rms); those of the first window itself 1.4 to 2.2,
+/// all of them low. Errors are of blocks of time.
 #pragma once
 
 #include "base/memory.h"

@@ -293,7 +293,7 @@ static enum status find_correlation(const struct state *s, int k, double *values
             products[block] -= values[lag] * squares[whole - blocks + block];
         values[row + lag] = mf_statistics_correlated_error(products, blocks, 1) / square;
         of_parts[lag] =
-            blocks > 1 ? error_of_parts(s, k, NUMBERS + lag, origins, values[lag]) / square : 0;
+            blocks > 1 ? error_of_parts(s, k, NUMBERS + lag, origins, values[lag]) / square : NAN;
     }
     mf_statistics_take_larger(values + row, of_parts, row);
     mf_statistics_mark_unknown_errors(values + row, row);

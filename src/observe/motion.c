@@ -379,7 +379,7 @@ static void find_systematic(const struct motion *motion, struct motion_summary *
     average(motion, motion->products, read_coarser, 0, &coarser, &error);
     s->green_kubo_sampling = fabs(coarser) / 3;
     average(motion, motion->products, read_second_half, 0, &half, &error);
-    s->green_kubo_truncation = isnan(half) ? NAN : fmax(0, fabs(half) - error);
+    s->green_kubo_truncation = isnan(half) ? NAN : fmax(0, fabs(half) - (isnan(error) ? 0 : error));
     average(motion, motion->products, read_lag, 0, &start, &error);
     average(motion, motion->products, read_lag, 1, &next, &error);
     s->vacf_drop = 1 - next / start;
@@ -420,8 +420,8 @@ enum status mf_motion_table(const struct motion *motion, double **columns) {
 }
 
 double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary) {
-    return hypot(hypot(summary->green_kubo_error, summary->green_kubo_sampling),
-                 summary->green_kubo_truncation);
+    const double error = isnan(summary->green_kubo_error) ? 0 : summary->green_kubo_error;
+    return hypot(hypot(error, summary->green_kubo_sampling), summary->green_kubo_truncation);
 }
 
 bool mf_motion_is_coarse(const struct motion_summary *s) {
@@ -439,7 +439,7 @@ enum status mf_motion_assess(const struct motion_summary *summary) {
             "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "
             "%% from one sample to the next; lower \"motion.every\"",
             s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
-    // An error of 0 is not known: there was one window.
+    // It is not known of one window.
     if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
         return mf_status_fail(
             STATUS_UNCONVERGED,

@@ -107,7 +107,8 @@ struct observable {
     /// A line for the person.
     void (*print)(const void *state, const struct observable_results *results, char *line,
                   size_t size);
-    /// Whether its results can be trusted; the message is a warning if not.
+    /// Whether its results can be trusted; the message is a warning if not. UNSTABLE: nothing of
+    /// the simulation can, and it is not ok.
     enum status (*assess)(const void *state, const struct simulation_setup *setup);
 
     /// Its stages of `--explain`, `every` being the steps between the plan's samples.

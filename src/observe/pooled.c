@@ -25,7 +25,8 @@ void mf_pooled_join(const struct observable_values *values, const struct pooled_
         for (size_t n = 0; n < count; n++)
             squares += pow(replicas[n].value[k] - values->value[k], 2);
         const double scatter = squares / ((double)count * between);
-        *error = sqrt((inside * *error * *error + between * scatter) / (inside + between));
+        const double own = inside > 0 ? inside * *error * *error : 0; // of one block not known
+        *error = sqrt((own + between * scatter) / (inside + between));
     }
 }
 

@@ -234,18 +234,18 @@ static const char *axis_name(const struct state *s) {
 static enum status tell_none(const struct state *s, const struct found *found) {
     const char *const axis = axis_name(s);
     if (found->fit.liquid_bins < 2 || found->fit.vapour_bins < 2)
-        return mf_status_fail(STATUS_UNSTABLE,
+        return mf_status_fail(STATUS_UNCONVERGED,
                               "no interface found: the density along %s has no two plateaus with "
                               "an interface between them; a slab may begin by \"slab\" of "
                               "\"particles\", in a box that is longer, or at a lower temperature",
                               axis);
     if (found->has_step)
         return mf_status_fail(
-            STATUS_UNSTABLE,
+            STATUS_UNCONVERGED,
             "no interface found: more than one slab, or a hole: the density along "
             "%s rises more than once; begin by \"slab\" of \"particles\"",
             axis);
-    return mf_status_fail(STATUS_UNSTABLE,
+    return mf_status_fail(STATUS_UNCONVERGED,
                           "no interface found: the densities along %s differ by no more than "
                           "chance allows; a slab may begin by \"slab\" of \"particles\", at a "
                           "lower temperature",

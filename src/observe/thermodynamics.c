@@ -18,23 +18,37 @@ void mf_thermodynamics_clear(struct thermodynamics *thermodynamics) {
     mf_sample_series_clear(&thermodynamics->series);
 }
 
+static bool knows_laplacian(const struct interaction *kind) {
+    return kind->laplacian != NULL;
+}
+
+static bool lacks_laplacian(const struct interaction *kind) {
+    return kind->laplacian == NULL;
+}
+
 /// Numerator and denominator of the configurational temperature; the potentials beside the pairs
 /// count, too.
 static enum status configurational(const struct simulation *simulation, double *squares,
                                    double *laplacian) {
     enum status status = STATUS_OK;
     const struct particles *particles = &simulation->particles;
-    double *beside[3] = {NULL};
+    double *known[3] = {NULL}, *others[3] = {NULL};
     const bool alone = simulation->interactions == 1;
-    for (int d = 0; d < particles->box.dimensions && !alone; d++)
-        NEW_ARRAY(beside[d], particles->count);
-    CHECK(mf_simulation_interaction_forces(simulation, beside));
+    for (int d = 0; d < particles->box.dimensions && !alone; d++) {
+        NEW_ARRAY(known[d], particles->count);
+        NEW_ARRAY(others[d], particles->count);
+    }
+    CHECK(mf_simulation_interaction_forces(simulation, lacks_laplacian, others));
+    CHECK(mf_simulation_interaction_forces(simulation, knows_laplacian, known));
     CHECK(mf_configurational(simulation->law.potential, &simulation->law.composition,
                              simulation->setup.temperature, particles, &simulation->neighbours,
-                             alone ? NULL : beside, squares, laplacian));
+                             alone ? NULL : known, alone ? NULL : others, squares, laplacian));
+    CHECK(mf_simulation_interaction_laplacian(simulation, laplacian));
 done:
-    for (int d = 0; d < 3; d++)
-        mf_memory_free(beside[d]);
+    for (int d = 0; d < 3; d++) {
+        mf_memory_free(known[d]);
+        mf_memory_free(others[d]);
+    }
     return status;
 }
 
@@ -139,6 +153,9 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
     ratio(replicas, count, THERMODYNAMICS_PRESSURE, -1, &s.pressure, &s.pressure_error);
     ratio(replicas, count, THERMODYNAMICS_FORCE_SQUARES, THERMODYNAMICS_LAPLACIAN,
           &s.temperature_configurational, &s.temperature_configurational_error);
+    double laplacian, error;
+    ratio(replicas, count, THERMODYNAMICS_LAPLACIAN, -1, &laplacian, &error);
+    s.laplacian_error = fabs(error / laplacian);
     return s;
 }
 
@@ -162,6 +179,14 @@ static bool is_absurd(double temperature, double wanted) {
     return temperature <= 0 || temperature > absurd * wanted;
 }
 
+/// Forces that hardly act have a ⟨∇²U⟩ that is not known from 0, and a ratio to it that says
+/// nothing; without velocities, where there is nothing else to ask, it counts.
+static bool knows_positions(const struct thermodynamics_summary *s, bool has_velocities) {
+    static const double known = 0.25;
+    return !isnan(s->temperature_configurational) &&
+           !(has_velocities && s->laplacian_error > known);
+}
+
 /// Walls and obstacles of a solvent push beads by no force that the positions would tell of.
 static bool shows_forces(const struct simulation_setup *setup) {
     return setup->integrator->solvent_particles == NULL;
@@ -171,7 +196,7 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
                                      const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
     const bool has_velocities = simulation_has_velocities(setup);
-    const bool positions = !isnan(s->temperature_configurational) && shows_forces(setup);
+    const bool positions = knows_positions(s, has_velocities) && shows_forces(setup);
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const bool nobody =
         setup->integrator->solvent_particles && isnan(s->temperature); // a solvent alone

@@ -60,6 +60,7 @@ struct thermodynamics_summary {
     size_t blocks;                         ///< behind the errors, of all replicas
     double temperature, temperature_error; ///< NaN without velocities
     double temperature_configurational, temperature_configurational_error; ///< NaN without Φ
+    double laplacian_error; ///< of ⟨∇²U⟩, relative: what a ratio to it is worth
     double potential_energy, potential_energy_error;
     double pressure, pressure_error;
 };
@@ -111,8 +112,9 @@ struct thermodynamics_shift {
     double pressure, error; ///< of P by the step, and its standard error; NaN: not known
 };
 
-/// NaN of other integrators, of beads of several masses, with inner steps of bonds, and with fewer
-/// than a hundred samples. Tested: test_time_step_shift.
+/// NaN of other integrators, of beads of several masses, of molecules, where something acts whose
+/// Laplacian is not known, with inner steps, and with fewer than a hundred samples. Tested:
+/// test_time_step_shift.
 struct thermodynamics_shift mf_thermodynamics_shift(const struct thermodynamics *replicas,
                                                     size_t count,
                                                     const struct thermodynamics_summary *summary,

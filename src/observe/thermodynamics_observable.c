@@ -71,11 +71,24 @@ static enum status write(const void *state, const struct observable_results *res
                                       t->series.count);
 }
 
+/// Half as much again, or half of it, is not the temperature of the scene: nothing of the
+/// simulation is right. What is nearer is a warning.
+static bool is_another(const struct thermodynamics_summary *s,
+                       const struct simulation_setup *setup) {
+    static const double factor = 1.5;
+    const double found =
+        simulation_has_velocities(setup) ? s->temperature : s->temperature_configurational;
+    return found > factor * setup->temperature || found < setup->temperature / factor;
+}
+
 /// Temperatures first: a step that is too long tells more than the drift that it makes.
 static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct thermodynamics *t = state;
     const struct thermodynamics_summary s = mf_thermodynamics_result(t, 1);
-    TRY(mf_thermodynamics_assess(&s, setup));
+    const enum status status = mf_thermodynamics_assess(&s, setup);
+    if (status == STATUS_UNSTABLE && !is_another(&s, setup))
+        return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_message());
+    TRY(status);
     TRY(mf_equilibrium_check("potential energy",
                              mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
                              t->series.count));

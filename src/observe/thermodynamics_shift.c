@@ -2,6 +2,7 @@
 #include "observe/thermodynamics.h"
 
 #include "dynamics/respa.h"
+#include "forces/molecules.h"
 
 #include <math.h>
 
@@ -57,10 +58,22 @@ static double response(const struct fluctuations *f, int a, double temperature, 
            temperature;
 }
 
+/// Whether the series are of the whole U, as all that acts knows its Laplacian, and a step is short
+/// for all of it. It is not for bonds, whose (Ω Δt)² is near 1: of trimers with 0.8 a step makes
+/// 0.048(5) of the pressure, and 0.020(3) is told.
+static bool is_whole(const struct simulation_setup *setup) {
+    for (int k = 0; k < setup->interactions; k++)
+        if (setup->interaction[k].kind->laplacian == NULL ||
+            setup->interaction[k].kind == &mf_molecules)
+            return false;
+    return true;
+}
+
 static bool is_known(const struct simulation_setup *setup) {
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
     return setup->integrator->forces_midway && setup->potential && !mf_respa_acts(setup) &&
-           simulation_holds_temperature(setup) && masses.maximum <= masses.minimum;
+           simulation_holds_temperature(setup) && is_whole(setup) &&
+           masses.maximum <= masses.minimum;
 }
 
 struct thermodynamics_shift mf_thermodynamics_shift(const struct thermodynamics *replicas,

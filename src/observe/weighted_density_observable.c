@@ -75,7 +75,7 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     (void)setup;
     if (!(beyond > allowed))
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNSTABLE,
+    return mf_status_fail(STATUS_UNCONVERGED,
                           "the weighted densities of a part %.2g of the particles are above the "
                           "table's largest, %.4g: give a larger weighted_density.maximum",
                           beyond, d->settings.maximum);

@@ -294,8 +294,7 @@ enum status mf_compare_folders(const char *const *folders, size_t count, const c
     }
     CHECK(bring_together(fits, count, folders));
     CHECK(check_lengths(fits, count, folders));
-    if (!quiet)
-        warn_of_lengths(fits, count, folders);
+    warn_of_lengths(fits, count, folders);
     name_fits(fits, count);
     CHECK(mf_tracked_files_make(&own, out, TRACKED_FILES_OF_COMPARISON));
     own.force = force;

@@ -9,6 +9,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 /// Least time between two lines, and between two files [s].
@@ -17,7 +18,7 @@ static const double terminal_interval = 0.2, pipe_interval = 5, file_interval = 
 /// Part of the time that files may take: a disk of a cluster may be slow.
 static const double file_share = 1.0 / 1000;
 
-struct progress mf_progress_begin(bool quiet, const struct watcher *watcher) {
+struct progress mf_progress_begin(enum run_words quiet, const struct watcher *watcher) {
     return (struct progress){.quiet = quiet,
                              .terminal = isatty(STDERR_FILENO),
                              .started = clock_seconds(),
@@ -166,6 +167,11 @@ void mf_progress_report_iteration(struct progress *progress, const struct invers
                              .open = now->doubling.number > 0});
 }
 
+static bool is_warning(const char *line) {
+    static const char begin[] = "mesofit: warning: ";
+    return strncmp(line, begin, sizeof begin - 1) == 0;
+}
+
 void mf_progress_print(struct progress *progress, const char *format, ...) {
     const struct watcher *watcher = progress->watcher;
     char line[1024];
@@ -175,7 +181,7 @@ void mf_progress_print(struct progress *progress, const char *format, ...) {
     va_end(arguments);
     if (watcher)
         watcher->print(watcher->context, line);
-    if (progress->quiet)
+    if (progress->quiet > (is_warning(line) ? RUN_WARNS : RUN_SAYS_ALL))
         return;
     if (progress->open_line)
         mf_terminal_clear_line();

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file Progress of long work: one updating line on a terminal, a line every few seconds at most
-/// in a pipe, nothing with --quiet, always on stderr; and while a run works for longer than that,
-/// progress.json in its folder, for who looks from elsewhere.
+/// in a pipe, warnings alone with --quiet, always on stderr; and while a run works for longer than
+/// that, progress.json in its folder, for who looks from elsewhere.
 #pragma once
 
 #include "io/units_scale.h"
 #include "problem/inverse.h"
 #include "report/progress_pace.h"
 #include "report/watcher.h"
+#include "scene/run_options.h"
 
 #include <stdbool.h>
 #include <stdint.h>
 
 struct progress {
-    bool quiet, terminal;
+    enum run_words quiet;
+    bool terminal;
     double started;                ///< clock at the begin [s]
     double last;                   ///< clock of the last line [s]
     uint64_t written;              ///< parts that were done then
@@ -28,7 +30,7 @@ struct progress {
 };
 
 /// @param[in] watcher  NULL: nobody watches
-struct progress mf_progress_begin(bool quiet, const struct watcher *watcher);
+struct progress mf_progress_begin(enum run_words quiet, const struct watcher *watcher);
 
 /// Seconds since mf_progress_begin.
 double mf_progress_seconds(const struct progress *progress);
@@ -53,7 +55,8 @@ void mf_progress_rate_text(double rate, const char *unit, char text[PROGRESS_RAT
 /// Remove progress.json, if there is a folder for it: nothing works there any more.
 void mf_progress_end(const struct progress *progress);
 
-/// End the updating line, if there is one, and print a line of its own unless quiet.
+/// End the updating line, if there is one, and print a line of its own; if quiet, one alone that
+/// begins with "mesofit: warning: ". Tested: test_progress.
 void mf_progress_print(struct progress *progress, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

@@ -9,6 +9,13 @@
 struct caller_observables;
 struct watcher;
 
+/// How much a run says. Warnings are of its results, which nobody may miss in a batch job.
+enum run_words {
+    RUN_SAYS_ALL,
+    RUN_WARNS,       ///< --quiet
+    RUN_SAYS_NOTHING ///< a watcher is told, or another rank says it
+};
+
 /// Options that all runs share, from the command line.
 struct run_options {
     const char *folder; ///< -o, or NULL: `out` beside the input file
@@ -16,7 +23,8 @@ struct run_options {
     bool has_threads; ///< they were asked for
     bool has_seed;
     uint64_t seed; ///< --seed, instead of the input file's
-    bool quiet, resume;
+    enum run_words quiet;
+    bool resume;
     bool force;              ///< replace the results that are in the folder
     bool no_figures;         ///< none are drawn in the folder
     const atomic_bool *stop; ///< ends the run as Ctrl-C does, or NULL; borrowed

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "trajectory/mapping_build.h"
 
+#include "base/memory.h"
 #include "trajectory/elements.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -20,8 +20,7 @@ enum status mf_mapping_note(struct mapping *mapping, const char *format, ...) {
 /// Mass of an atom and who says so.
 enum origin { FROM_PLAN, FROM_FILE, FROM_ELEMENT, FROM_NOBODY };
 
-/// What an atom of which the file says no mass seems to be, or NULL.
-static const char *guess(const struct structure *structure, size_t k) {
+const char *mf_mapping_element(const struct structure *structure, size_t k) {
     const struct structure_atom *const atom = &structure->atom[k];
     const bool alone = structure->residues > 0 && (k == 0 || atom[-1].residue != atom->residue) &&
                        (k + 1 == structure->atoms || atom[1].residue != atom->residue);
@@ -47,7 +46,7 @@ static enum origin find_mass(const struct mapping_plan *plan, const struct struc
     *mass = atom->mass;
     if (from_file && atom->mass >= 0)
         return FROM_FILE;
-    const char *const element = guess(structure, number);
+    const char *const element = mf_mapping_element(structure, number);
     *mass = element ? mf_elements_mass(element) : NAN;
     return element ? FROM_ELEMENT : FROM_NOBODY;
 }
@@ -57,9 +56,8 @@ enum { MAX_REPORTED = 64 };
 struct reported {
     const struct structure_atom *atom[MAX_REPORTED];
     size_t count;
-    bool from_file;                      ///< the file knows masses
-    bool hydrogen;                       ///< there is some
-    const struct structure_atom *carbon; ///< that is called by more than its element, or NULL
+    bool from_file; ///< the file knows masses
+    bool *guessed;  ///< shape [atoms]
 };
 
 static bool was_reported(struct reported *reported, const struct structure_atom *atom) {
@@ -82,16 +80,8 @@ static enum status note_guess(struct mapping *mapping, struct reported *reported
         return mf_mapping_note(mapping, "masses of further names were guessed, too");
     return mf_mapping_note(mapping, "guessed by its name: \"%s\"%s%s%s is %s, %g u", atom->name,
                            atom->residue_name[0] ? " of \"" : "", atom->residue_name,
-                           atom->residue_name[0] ? "\"" : "", guess(structure, k), mass);
-}
-
-/// Carbon that is called CH3 or CA where there is no hydrogen has its hydrogen in it.
-static void look_for_united(struct reported *reported, const struct structure *structure,
-                            size_t k) {
-    const char *const element = guess(structure, k), *const name = structure->atom[k].name;
-    reported->hydrogen = reported->hydrogen || strcmp(element, "H") == 0;
-    if (strcmp(element, "C") == 0 && isalpha((unsigned char)name[1]))
-        reported->carbon = &structure->atom[k];
+                           atom->residue_name[0] ? "\"" : "", mf_mapping_element(structure, k),
+                           mass);
 }
 
 /// Whether given weights are those of masses, as 16 1 1 of water: a bead's velocity is then that of
@@ -126,8 +116,7 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
                                   "%s: unknown mass of atom %zu, \"%s\": give it in \"masses\" of "
                                   "the map (0 for a site without mass)",
                                   plan->file, k + 1, structure->atom[k].name);
-        if (origin == FROM_ELEMENT)
-            look_for_united(reported, structure, k);
+        reported->guessed[k] = origin == FROM_ELEMENT;
         if (origin == FROM_ELEMENT)
             TRY(note_guess(mapping, reported, structure, k, mass));
         bead->mass += mass;
@@ -153,17 +142,12 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
 enum status mf_mapping_build_masses(struct mapping *mapping, const struct mapping_plan *plan,
                                     const struct structure *structure) {
     struct reported reported = {.from_file = has_masses(structure)};
+    OWNED bool *guessed = NULL;
+    TRY_ARRAY(guessed, structure->atoms);
+    reported.guessed = guessed;
     for (size_t k = 0; k < mapping->beads; k++)
         TRY(weigh_bead(mapping, plan, structure, &mapping->bead[k], &reported));
-    if (reported.carbon && !reported.hydrogen)
-        return mf_mapping_note(
-            mapping,
-            "mesofit: warning: \"%s\" has the mass of carbon, and there is no hydrogen: are these "
-            "united atoms? Their masses are those of a topology (-s topol.top), or of \"masses\" "
-            "of a "
-            "map",
-            reported.carbon->name);
-    return STATUS_OK;
+    return mf_mapping_build_united(mapping, structure, guessed);
 }
 
 enum status mf_mapping_build_notes(struct mapping *mapping) {

@@ -234,7 +234,8 @@ static enum status write_summary(const struct run *run, double taken) {
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     mf_units_write_summary(&run->scene.units, writer);
-    mf_json_write_text(writer, "status", mf_status_name(STATUS_OK));
+    mf_json_write_text(writer, "status",
+                       mf_status_name(mf_simulate_observables_judge(&run->observables, &results)));
     mf_json_write_text(writer, "method", "simulate");
     mf_json_write_number(writer, "seconds", taken);
     mf_json_write_number(writer, "engine_steps", (double)run->simulation.step);
@@ -351,7 +352,7 @@ static enum status write_results(struct run *run) {
     describe_memory(run, memory);
     mf_progress_print(&run->progress, "%llu steps in %.3g s, %s; results in %s",
                       (unsigned long long)run->simulation.step, taken, memory, run->folder.path);
-    return STATUS_OK;
+    return mf_simulate_observables_judge(&run->observables, &results);
 }
 
 static void clear(struct run *run) {

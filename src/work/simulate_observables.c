@@ -231,7 +231,21 @@ void mf_simulate_observables_print(const struct simulate_observables *observable
         const enum status status = use->observable->assess
                                        ? use->observable->assess(use->state, results->setup)
                                        : STATUS_OK;
-        if (mf_units_add_to_message(results->units, status) != STATUS_OK)
+        // What is wrong ends the run, and is not a warning.
+        if (mf_units_add_to_message(results->units, status) != STATUS_OK &&
+            status != STATUS_UNSTABLE)
             mf_progress_print(to, "mesofit: warning: %s", mf_status_message());
     }
+}
+
+enum status mf_simulate_observables_judge(const struct simulate_observables *observables,
+                                          const struct observable_results *results) {
+    for (const struct observable_use *use = observables->use; use->observable; use++) {
+        const enum status status = use->observable->assess
+                                       ? use->observable->assess(use->state, results->setup)
+                                       : STATUS_OK;
+        if (mf_units_add_to_message(results->units, status) == STATUS_UNSTABLE)
+            return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_message());
+    }
+    return STATUS_OK;
 }

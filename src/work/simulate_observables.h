@@ -75,6 +75,11 @@ void mf_simulate_observables_write_summary(const struct simulate_observables *ob
                                            const struct observable_results *results,
                                            struct json_writer *writer);
 
+/// Whether the simulation is what the scene says. Fails: UNCONVERGED, as a fit whose verification
+/// is not, if one of its observables is assessed as unstable.
+enum status mf_simulate_observables_judge(const struct simulate_observables *observables,
+                                          const struct observable_results *results) MUST_USE;
+
 /// Say what a person is to know, and what is not to be trusted.
 void mf_simulate_observables_print(const struct simulate_observables *observables,
                                    const struct observable_results *results, struct progress *to);

@@ -141,6 +141,17 @@ static void test_interrupted_bench_leaves_nothing(void **state) {
     run_program_assert_no_partial(".");
 }
 
+/// What other integrators would take for an ideal gas, or have no pairs to look at.
+static const char hard_discs[] =
+    "{\"dimensions\": 2, \"box\": [20, 20], \"particles\": {\"count\": 40, \"radius\": 0.5},\n"
+    "\"time_step\": 0.05, \"dynamics\": {\"integrator\": \"event-driven\"}}\n";
+static const char solvent[] =
+    "{\"dimensions\": 2, \"box\": [16, 8], \"particles\": {\"count\": 0}, \"time_step\": 0.5,\n"
+    "\"dynamics\": {\"integrator\": \"collision-dynamics\", \"particles_per_cell\": 8}}\n";
+static const char soft_discs[] =
+    "{\"dimensions\": 2, \"box\": [20, 20], \"particles\": {\"count\": 40, \"radius\": 0.5},\n"
+    "\"time_step\": 0.01, \"interactions\": {\"soft-discs\": {\"strength\": 10}}}\n";
+
 static const struct {
     const char *words[8];
     const char *says[3];
@@ -160,11 +171,18 @@ static const struct {
     {{"bench", "engine", "small.json", "-o", "./small.json"}, {"./small.json would be replaced"}},
     {{"bench", "accuracy", "small.json", "--skips"}, {"bench accuracy takes no --skips"}},
     {{"bench", "engine", "small.json", "--time", "2"}, {"bench engine takes no --time"}},
+    {{"bench", "accuracy", "hard.json"}, {"velocities and forces, which \"event-driven\" has not"}},
+    {{"bench", "accuracy", "solvent.json", "--time", "1"},
+     {"which \"collision-dynamics\" has not"}},
+    {{"bench", "accuracy", "soft.json"}, {"soft: bench accuracy wants \"conservative\" or"}},
 };
 
 static void test_bad_lines_are_refused_before_anything_is_run(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "small.json", small_inputs_scene, NULL, NULL);
+    small_inputs_write(*state, "hard.json", hard_discs, NULL, NULL);
+    small_inputs_write(*state, "solvent.json", solvent, NULL, NULL);
+    small_inputs_write(*state, "soft.json", soft_discs, NULL, NULL);
     for (size_t k = 0; k < sizeof bad_lines / sizeof *bad_lines; k++) {
         run_program(&result, &(struct run_program_how){0}, bad_lines[k].words);
         run_program_assert_refused(&result, ".", bad_lines[k].says[0], 1, bad_lines[k].says);

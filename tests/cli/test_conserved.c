@@ -70,6 +70,18 @@ static void test_gravity_adds_its_momentum(void **state) {
     free(table);
 }
 
+/// Between two lists beads of a periodic box stand a little outside: none is lost.
+static void test_beads_that_a_list_has_not_wrapped_yet_are_kept(void **state) {
+    simulate(
+        *state,
+        "{\"seed\": 1, \"box\": [5, 5, 5], \"particles\": {\"count\": 300}, \"time_step\": 0.005, "
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}, \"dynamics\": "
+        "{\"integrator\": \"velocity-verlet\"}, \"measure\": {\"equilibration\": 0, "
+        "\"samples\": 50, \"every\": 3}, \"conserved\": {}}",
+        NULL, NULL);
+    assert_true(number("particles_change") == 0);
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -77,6 +89,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_collisions_keep_all_three),
         TEST(test_gravity_adds_its_momentum),
+        TEST(test_beads_that_a_list_has_not_wrapped_yet_are_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,7 +62,7 @@ static void find_line(const char *text, const char *word, char line[512]) {
 }
 
 static void test_block_is_printed_and_stands_in_the_files(void **state) {
-    static const char *const lines[] = {"friction", "D ", "E(t, r_0)", "summary"};
+    static const char *const lines[] = {"friction", "D ", "E(t, r_0)"};
     char printed[512], other[512];
     simulate(*state, soft_fluid, "0.5");
     char *said = strdup(export_to("hoomd", NULL));
@@ -77,9 +77,11 @@ static void test_block_is_printed_and_stands_in_the_files(void **state) {
         free(text);
     }
     assert_contains(said, "NOT that of the result: a Langevin bath");
-    find_line(said, "summary", printed);
+    // The one D of the result is that of its summary; what a bath does to it is a share.
+    find_line(said, "D ", printed);
     const double diffusion = results_number("out/summary.json", "motion.diffusion_msd");
     assert_true(diffusion > 0 && fabs(number_after(printed, "D ") / diffusion - 1) < 1e-3);
+    assert_null(strstr(strstr(printed, "of the result, in that bath"), "+-"));
     free(said);
     assert_contains(export_to("gromacs", NULL), "integrator sd");
     char *settings = temporary_folder_read("gromacs/grompp.mdp");
@@ -94,6 +96,33 @@ static void test_friction_that_an_engine_has_goes_along(void **state) {
     const char *said = export_to("espresso", NULL);
     assert_contains(said, "friction   that of the result: dpd with weight_function 1");
     assert_true(strstr(said, " in that bath") == NULL && strstr(said, "NOT") == NULL);
+}
+
+/// Where the configurational temperature is off by chance alone, the step is the result's; where
+/// the step makes it wrong, as its samples know, it is shortened.
+static void test_step_is_shortened_by_what_is_no_chance(void **state) {
+    static const char *const measured[] = {"\"time_step\": 0.005, \"measure\": {\"equilibration\": "
+                                           "100, \"samples\": 10, \"every\": 5}",
+                                           "\"time_step\": 0.08, \"measure\": {\"equilibration\": "
+                                           "100, \"samples\": 500, \"every\": 4}"};
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "scene.json",
+                           "{\"seed\": 5, \"box\": [3, 3, 3], \"particles\": {\"count\": 81},\n"
+                           "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}, "
+                           "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, MEASURED}\n",
+                           "MEASURED", measured[k]);
+        static struct run_program_result result;
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet", "--force");
+        const double off =
+            fabs(results_number("out/summary.json", "temperature_configurational") - 1);
+        assert_true(off > 0.01); // in both, so that the error alone tells them apart
+        export_to("votca", NULL);
+        char *readme = temporary_folder_read("votca/README");
+        const double step = number_after(readme, "Time step ");
+        const double own = number_after(readme, "mesofit's own was ");
+        assert_true(k == 0 ? step == own : step < 0.8 * own);
+        free(readme);
+    }
 }
 
 /// D of the block is the slope of Ornstein's MSD, 2 (T/(m g²)) (g t − 1 + exp(−g t)) along an axis,
@@ -163,6 +192,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_block_is_printed_and_stands_in_the_files),
         TEST(test_friction_that_an_engine_has_goes_along),
+        TEST(test_step_is_shortened_by_what_is_no_chance),
         TEST(test_diffusion_of_the_bath_is_that_of_ornstein),
         TEST(test_what_the_lammps_here_lacks_is_told),
     };

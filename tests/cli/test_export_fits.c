@@ -175,9 +175,9 @@ static void test_projection_of_a_power_law_costs_nothing(void **state) {
     const char *at = strstr(text, "Omega is replaced by the power law here");
     assert_non_null(at);
     for (int k = 0; k < 2; k++) {
-        at = strstr(at, ", D ");
+        at = strstr(at, ", slope of the MSD ");
         assert_non_null(at);
-        assert_int_equal(sscanf(at++, ", D %lf +- %lf", &value[k], &error[k]), 2);
+        assert_int_equal(sscanf(at++, ", slope of the MSD %lf +- %lf", &value[k], &error[k]), 2);
     }
     free(text);
     assert_true(fabs(value[0] - value[1]) < 5 * sqrt(error[0] * error[0] + error[1] * error[1]));

@@ -47,6 +47,9 @@ static void test_what_cannot_be_exported_is_one_line(void **state) {
     small_scenes_write(*state, small_scenes_dpd,
                        "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}",
                        "\"dynamics\": {\"integrator\": \"brownian\"}");
+    char *scene = temporary_folder_read("scene.json");
+    small_scenes_write(*state, scene, "\"time_step\": 0.04", "\"time_step\": 0.001");
+    free(scene);
     small_scenes_simulate(&result, "overdamped");
     assert_refused("overdamped", "gromacs", NULL, "without velocities");
     RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "pushed");

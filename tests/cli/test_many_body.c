@@ -143,7 +143,7 @@ static void test_densities_beyond_a_table_are_told_in_the_units_of_the_file(void
     assert_contains(result.err, words);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force", "--quiet");
     run_program_assert_code(&result, 0);
-    assert_null(strstr(result.err, words));
+    assert_contains(result.err, words); // a warning is no progress
     char *summary = temporary_folder_read("out/summary.json");
     assert_contains(summary, words);
     free(summary);

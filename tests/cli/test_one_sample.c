@@ -78,6 +78,35 @@ static void test_errors_of_one_sample_are_not_known_and_of_more_are(void **state
     }
 }
 
+/// Lags that few samples reach have one block, or none: what is not known is no error of 0. At lag
+/// 0 the correlation is 1, and its error is 0.
+static void test_errors_of_lags_with_one_block_are_not_known(void **state) {
+    small_inputs_write(
+        *state, "scene.json",
+        "{\"box\": [5, 5, 5], \"time_step\": 0.01, \"bonds\": {\"b\": {\"law\": "
+        "\"harmonic\", \"k\": 100, \"length\": 0.6}},\n\"molecules\": {\"d\": {\"count\": "
+        "40, \"chain\": {\"type\": \"A\", \"length\": 3, \"bond\": \"b\"}}},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, \"measure\": "
+        "{\"equilibration\": 10, \"samples\": 40, \"every\": 5}, \"molecule_sizes\": {}}",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "few");
+    run_program_assert_code(&result, 0);
+    char *text = temporary_folder_read("few/end_to_end.tsv"), *rest;
+    size_t known = 0, unknown = 0;
+    for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        double time, correlation, error;
+        if (line[0] == '#')
+            continue;
+        assert_int_equal(sscanf(line, "%lf %lf %lf", &time, &correlation, &error), 3);
+        if (time > 0 && error == 0)
+            fail_msg("end_to_end.tsv: an error of 0 in \"%s\"", line);
+        known += error > 0;
+        unknown += isnan(error);
+    }
+    assert_true(known > 20 && unknown > 0);
+    free(text);
+}
+
 static void test_results_without_errors_are_drawn_and_compared(void **state) {
     small_inputs_need_gnuplot();
     simulate(*state, "\"samples\": 1", "one");
@@ -121,6 +150,7 @@ static void test_fit_takes_a_target_whose_errors_are_nan_for_one_without(void **
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_errors_of_one_sample_are_not_known_and_of_more_are),
+        TEST(test_errors_of_lags_with_one_block_are_not_known),
         TEST(test_results_without_errors_are_drawn_and_compared),
         TEST(test_fit_takes_a_target_whose_errors_are_nan_for_one_without),
     };

@@ -264,6 +264,21 @@ static void test_simulate_warns_when_only_the_kinetic_temperature_is_right(void 
     free(summary);
 }
 
+/// Steps that heat it to twice its temperature, which a quiet run tells as well, as a warning.
+static void test_simulate_is_not_ok_when_its_temperature_is_another(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, small_scenes_dpd, "0.04", "0.15");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "hot", "--quiet");
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, "mesofit: the temperature is ");
+    results_assert_text("hot/summary.json", "status", "unconverged");
+    small_scenes_write(*state, small_scenes_dpd, "0.04", "0.115");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "warm", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "mesofit: warning: the temperature is ");
+    assert_null(strstr(result.err, "steps"));
+}
+
 /// Trimers whose energy still rises from that of molecules at rest, and the same after a while.
 static void test_simulate_warns_when_it_has_not_settled(void **state) {
     static const char plan[] = "\"equilibration\": 0, \"samples\": 100, \"every\": 5";
@@ -414,6 +429,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_explain_tells_what_is_on_and_off),
         TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
+        TEST_WITHOUT_FIGURES(test_simulate_is_not_ok_when_its_temperature_is_another),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_nothing_holds_the_temperature),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_steps_do_not_follow_a_memory),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_it_has_not_settled),

@@ -316,7 +316,7 @@ static void add_configurational(const struct metropolis *metropolis, double *squ
     assert_ok(mf_neighbours_sort_and_build(&half, &copy));
     const struct composition alike = {0};
     assert_ok(mf_reference_configurational(metropolis->law.potential, &alike,
-                                           metropolis->law.temperature, &copy, &half, NULL,
+                                           metropolis->law.temperature, &copy, &half, NULL, NULL,
                                            &here[0], &here[1]));
     *squares += here[0];
     *laplacian += here[1];

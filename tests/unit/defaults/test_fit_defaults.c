@@ -351,6 +351,24 @@ static void test_fit_defaults_choose_no_count_beside_a_file_of_places(void **sta
     mf_fit_file_clear(&fit);
 }
 
+/// However noisy or exact the target, however thin or dense the liquid: what is chosen is never out
+/// of the range of its own key.
+static void test_fit_defaults_choose_nothing_that_the_reader_refuses(void **state) {
+    static const double errors[] = {1e-12, 0.002, 0.3, 7.8, 1e6};
+    static const double densities[] = {1e-9, 1e-3, 0.3};
+    for (size_t e = 0; e < sizeof errors / sizeof *errors; e++)
+        for (size_t d = 0; d < sizeof densities / sizeof *densities; d++) {
+            struct fit_file fit;
+            char run[512];
+            write_target(state, errors[e]);
+            snprintf(run, sizeof run, TARGET "\"scene\": {\"density\": %g}}", densities[d]);
+            const enum status status = read_run(state, &fit, "run.json", run);
+            if (status != STATUS_OK)
+                fail_msg("error %g, density %g: %s", errors[e], densities[d], mf_status_message());
+            mf_fit_file_clear(&fit);
+        }
+}
+
 static void test_fit_defaults_tell_faults_once_and_only_what_is_missing(void **state) {
     struct fit_file fit;
     write_target(state, 0.002);
@@ -392,6 +410,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_join_fine_rows_and_end_g_with_its_structure),
         IN_FOLDER(test_fit_defaults_end_g_of_water_behind_its_third_layer),
         IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
+        IN_FOLDER(test_fit_defaults_choose_nothing_that_the_reader_refuses),
         IN_FOLDER(test_fit_defaults_tell_faults_once_and_only_what_is_missing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -121,6 +121,26 @@ static void test_green_kubo_error_covers_a_tail_that_noise_hides(void **state) {
     }
 }
 
+/// Ten times the memory of a flow makes windows that know nothing more: of a decay with 4 the value
+/// is not read at the end of 400, and known better than there, by its own error and by scatter.
+static void test_green_kubo_does_not_read_the_end_of_long_lags(void **state) {
+    (void)state;
+    enum { FLUIDS = 40, LAGS = 400, SAMPLES = 4000 };
+    static const struct modes modes = {"short", {0.5, 0.5, 0}, {0, 4, 0}};
+    double window = 0, squares = 0, error = 0;
+    for (uint64_t run = 1; run <= FLUIDS; run++) {
+        const struct green_kubo_summary s = simulate_modes(run, &modes, LAGS, SAMPLES);
+        window += (double)s.window / FLUIDS;
+        squares += pow(s.value - 1, 2) / FLUIDS;
+        error += s.error / FLUIDS;
+    }
+    // Of the whole window: I(k) of white noise has a variance of about 4 k/(5 n).
+    const double whole = sqrt(4.0 * LAGS / (COMPONENTS * SAMPLES));
+    print_message("window %.0f of %d, scatter %.3f, error %.3f, of the whole window %.3f\n", window,
+                  LAGS, sqrt(squares), error, whole);
+    assert_true(window < LAGS / 2.0 && sqrt(squares) < 0.9 * whole && error < 0.9 * whole);
+}
+
 static void test_green_kubo_tells_that_a_window_is_too_short(void **state) {
     (void)state;
     int reached = 0;
@@ -135,6 +155,7 @@ int main(void) {
         cmocka_unit_test(test_green_kubo_knows_white_noise_and_its_own_error),
         cmocka_unit_test(test_green_kubo_knows_a_decay_and_its_own_error),
         cmocka_unit_test(test_green_kubo_error_covers_a_tail_that_noise_hides),
+        cmocka_unit_test(test_green_kubo_does_not_read_the_end_of_long_lags),
         cmocka_unit_test(test_green_kubo_tells_that_a_window_is_too_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -193,7 +193,8 @@ static void test_map_is_refused_when_it_does_not_fit_the_atoms(void **state) {
     mf_mapping_clear(&mapping);
     structure.atom[6].mass = 5;
     assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
-    assert_null(strstr((const char *)mapping.notes.data, "united"));
+    assert_contains((const char *)mapping.notes.data, // of which all but an OH are left out here
+                    "the mass of carbon is taken for \"C\" of \"MET\"");
     clear();
 }
 
@@ -230,20 +231,71 @@ static void test_sites_without_mass_do_not_count(void **state) {
     clear();
 }
 
-/// Atoms of methyl and no hydrogen; a carbon that is called C is one.
+/// One molecule of these atoms, by names apart by blanks.
+static void try_molecule(void **state, const char *names, const char *masses) {
+    char text[128], json[128], *rest, *name;
+    size_t count = 0;
+    snprintf(text, sizeof text, "%s", names);
+    assert_ok(mf_structure_init(&structure, strlen(names)));
+    structure.has_names = structure.has_residues = true;
+    for (name = strtok_r(text, " ", &rest); name; name = strtok_r(NULL, " ", &rest)) {
+        snprintf(structure.atom[count].name, STRUCTURE_NAME, "%s", name);
+        snprintf(structure.atom[count++].residue_name, STRUCTURE_NAME, "MOL");
+    }
+    structure.atoms = count;
+    assert_ok(mf_structure_number_residues(&structure));
+    snprintf(json, sizeof json, "{\"beads\": {\"A\": {}}%s%s}", masses ? ", \"masses\": " : "",
+             masses ? masses : "");
+    assert_ok(try_map(state, json));
+}
+
+/// Molecules of chemistry with all their atoms, and such as force fields of united atoms have them.
 static void test_united_atoms_are_warned_of(void **state) {
-    make_structure();
-    for (int k = 0; k < ATOMS; k++)
-        snprintf(structure.atom[k].name, STRUCTURE_NAME, "%s", k % 3 ? "O" : "C");
-    assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
-    assert_null(strstr((const char *)mapping.notes.data, "united"));
-    mf_mapping_clear(&mapping);
-    snprintf(structure.atom[0].name, STRUCTURE_NAME, "CH3");
-    assert_ok(try_map(state, "{\"beads\": {\"A\": {}}}"));
-    assert_contains((const char *)mapping.notes.data,
-                    "warning: \"CH3\" has the mass of carbon, and there is no hydrogen");
-    mf_mapping_clear(&mapping);
-    assert_ok(try_map(state, "{\"beads\": {\"A\": {}}, \"masses\": {\"CH3\": 15.035}}"));
+    static const char *const all[] = {
+        "C O O",                                       // carbon dioxide
+        "C O",                                         // carbon monoxide
+        "C N H",                                       // hydrogen cyanide
+        "C H1 H2 H3 OH HO",                            // methanol
+        "CH3 HH31 HH32 HH33 C O N H",                  // acetamide, as in AMBER
+        "C1 C2 H1 H2",                                 // acetylene
+        "C O1 O2 HO H",                                // formic acid
+        "C1 C2 C3 C4 C5 C6 H1 H2 H3 H4 H5 H6",         // benzene
+        "CL1 CL2 CL3 CL4 C",                           // tetrachloromethane
+        "C1 C2 N H1 H2 H3",                            // acetonitrile
+        "C1 O1 O2 C2 H1 H2 H3",                        // an acetate
+        "N H CA HA CB HB1 HB2 HB3 C O",                // alanine in a protein
+        "C1 C2 C3 C4 N1 C5 C6 H1 H2 H3 H4 H5 H6 H7 S", // a ring with sulphur
+    };
+    static const struct {
+        const char *atoms, *first, *last;
+    } united[] = {
+        {"C1 C2 C3 C4", "\"C1\"", "\"C4\""}, // butane
+        {"CH3 O H", "\"CH3\"", "\"CH3\""},   // methanol
+        {"C O H", "\"C\"", "\"C\""},
+        {"CT3 CT2 CT2 CT3", "\"CT3\"", "\"CT2\""},
+        {"CA C O CB", "\"CA\"", "\"CB\""},                 // acetone
+        {"C1 C2 O H", "\"C1\"", "\"C2\""},                 // ethanol
+        {"C", "\"C\"", "\"C\""},                           // methane
+        {"C CL1 CL2 CL3", "\"C\"", "\"C\""},               // chloroform
+        {"CB1 CB2 CB3 CB4 CB5 CB6", "\"CB1\"", "\"CB6\""}, // benzene
+    };
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        try_molecule(state, all[k], NULL);
+        if (strstr((const char *)mapping.notes.data, "united"))
+            fail_msg("%s: %s", all[k], (const char *)mapping.notes.data);
+        clear();
+    }
+    for (size_t k = 0; k < sizeof united / sizeof *united; k++) {
+        try_molecule(state, united[k].atoms, NULL);
+        const char *warning = strstr((const char *)mapping.notes.data, "mesofit: warning: ");
+        if (warning == NULL)
+            fail_msg("%s: no warning", united[k].atoms);
+        assert_contains(warning, united[k].first);
+        assert_contains(warning, united[k].last);
+        assert_contains(warning, "are these united atoms?");
+        clear();
+    }
+    try_molecule(state, "CH3 O H", "{\"CH3\": 15.035}");
     assert_null(strstr((const char *)mapping.notes.data, "united"));
     clear();
 }
