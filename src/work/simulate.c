@@ -229,12 +229,12 @@ static void write_remarks(const struct run *run, struct json_writer *writer) {
         mf_json_write_text(writer, "many_body_warning", text);
 }
 
-static enum status write_summary(const struct run *run, double taken) {
+static enum status write_summary(const struct run *run, enum status how, double taken) {
     const struct observable_results results = results_of(run);
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     mf_units_write_summary(&run->scene.units, writer);
-    mf_json_write_text(writer, "status", mf_status_name(STATUS_OK));
+    mf_json_write_text(writer, "status", mf_status_name(how));
     mf_json_write_text(writer, "method", "simulate");
     mf_json_write_number(writer, "seconds", taken);
     mf_json_write_number(writer, "engine_steps", (double)run->simulation.step);
@@ -338,16 +338,37 @@ static void describe_memory(const struct run *run, char line[MEMORY_SIZE]) {
                  bytes / count);
 }
 
-static enum status write_results(struct run *run) {
-    const double taken = seconds(run);
+/// Tables, figures and the summary of what was sampled.
+static enum status write_results(struct run *run, enum status how, double taken) {
     const struct observable_results results = results_of(run);
     TRY(mf_simulate_observables_write(&run->observables, &results));
-    TRY(write_summary(run, taken));
-    remove_checkpoint(run);
+    // Who is killed while they are drawn leaves a run that is to be resumed, which clears up.
     mf_run_folder_draw(&run->folder);
+    return write_summary(run, how, taken);
+}
+
+/// A simulation that is stopped leaves what it has measured, as the live view shows it, and goes on
+/// from its checkpoint. One sample alone has no errors.
+static enum status write_interrupted(struct run *run) {
+    const struct simulation *simulation = &run->simulation;
+    const bool sampled = (int64_t)simulation->step >= run->plan.equilibration + 2 * run->plan.every;
+    TRY(save(run));
+    if (sampled)
+        TRY(write_results(run, STATUS_INTERRUPTED, seconds(run)));
+    return mf_status_fail(
+        STATUS_INTERRUPTED, "interrupted at step %llu%s%.300s; continue with --resume",
+        (unsigned long long)simulation->step, sampled ? "; what there is, is in " : "",
+        sampled ? run->folder.path : "");
+}
+
+static enum status write_finished(struct run *run) {
+    const struct observable_results results = results_of(run);
+    const double taken = seconds(run);
+    char memory[MEMORY_SIZE];
+    TRY(write_results(run, STATUS_OK, taken));
+    remove_checkpoint(run);
     mf_simulate_observables_print(&run->observables, &results, &run->progress);
     print_remarks(run);
-    char memory[MEMORY_SIZE];
     describe_memory(run, memory);
     mf_progress_print(&run->progress, "%llu steps in %.3g s, %s; results in %s",
                       (unsigned long long)run->simulation.step, taken, memory, run->folder.path);
@@ -374,16 +395,12 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     CHECK(prepare(run, file, options));
     status = mf_units_add_to_message(&run->scene.units, carry_out(run));
-    if (status == STATUS_INTERRUPTED) {
-        CHECK(save(run));
-        status =
-            mf_status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; continue with --resume",
-                           (unsigned long long)run->simulation.step);
-    }
+    if (status == STATUS_INTERRUPTED)
+        status = write_interrupted(run);
     if (status == STATUS_UNSTABLE) // it would be so again
         remove_checkpoint(run);
     if (status == STATUS_OK)
-        status = write_results(run);
+        status = write_finished(run);
 done:
     clear(run);
     return status;
