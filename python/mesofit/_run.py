@@ -48,7 +48,7 @@ class Outcome:
 
     def __init__(self) -> None:
         self.status, self.message = c.OK, ""
-        self.lines: list[str] = []
+        self.lines: list[str] = []  # with names of Python
 
     def warn(self) -> None:
         """Turn what was said, and how it has ended, into Python's warnings."""
@@ -57,9 +57,9 @@ class Outcome:
             if line.startswith(_WARNING):
                 warnings.warn(line[len(_WARNING):], MesofitWarning, stacklevel=level)
         if self.status == c.UNCONVERGED:
-            warnings.warn(said(self.message), UnconvergedWarning, stacklevel=level)
+            warnings.warn(self.message, UnconvergedWarning, stacklevel=level)
         elif self.status == c.INTERRUPTED:
-            warnings.warn(said(self.message), InterruptedWarning, stacklevel=level)
+            warnings.warn(self.message, InterruptedWarning, stacklevel=level)
 
 
 def _level() -> int:
@@ -194,7 +194,7 @@ class _Run:
     def look(self, progress: Progress) -> None:
         lines = self.outcome.lines
         while (line := c.lib.mesofit_run_line(self.run, len(lines))) is not None:
-            lines.append(line.decode(errors="replace"))
+            lines.append(said(line.decode(errors="replace"), self.memory.frames is not None))
             log.info("%s", lines[-1])
             progress.say(lines[-1])
         if progress.wanted:
@@ -232,7 +232,7 @@ def carry_out(words: Sequence[str], memory: Memory | None = None,
     shown.end()
     outcome = run.outcome
     outcome.status = work.answer
-    outcome.message = work.message if work.answer != c.OK else ""
+    outcome.message = said(work.message, memory.frames is not None) if work.answer != c.OK else ""
     for functions in (memory.frames, memory.observables):
         if functions is not None and functions.fault is not None:
             raise functions.fault

@@ -13,7 +13,7 @@ from typing import Any, Callable, Union
 import numpy as np
 
 from . import _library as c
-from ._errors import InputError, said
+from ._errors import InputError
 from ._library import Array
 from ._inputs import Frames, Memory, PathLike, absolute, from_universe, merge
 from ._observables import Observables
@@ -145,7 +145,7 @@ def _carry_out(words: list[str], memory: Memory, folder: PathLike | None, resume
     outcome = carry_out(words, memory, progress)
     result = Result(place, outcome)
     if outcome.status == c.INTERRUPTED and not (place.path / "summary.json").exists():
-        raise KeyboardInterrupt(said(outcome.message))
+        raise KeyboardInterrupt(outcome.message)
     outcome.warn()
     return result
 
