@@ -104,19 +104,6 @@ static void read_offset(hid_t dataset, double *begin) {
     H5Aclose(attribute);
 }
 
-bool mf_h5md_element_is_whole(hid_t dataset) {
-    const hid_t space = H5Dget_space(dataset), type = H5Dget_type(dataset),
-                how = H5Dget_create_plist(dataset);
-    const H5D_layout_t layout = H5Pget_layout(how);
-    const double wanted = (double)H5Sget_simple_extent_npoints(space) * (double)H5Tget_size(type);
-    const hsize_t stored = H5Dget_storage_size(dataset);
-    H5Pclose(how);
-    H5Tclose(type);
-    H5Sclose(space);
-    const bool empty = layout == H5D_CONTIGUOUS && stored == 0; // never written: all fill values
-    return layout == H5D_CHUNKED || empty || (double)stored == wanted;
-}
-
 /// Open a dataset whose numbers are in this file, with room for the chunks that a frame is in, so
 /// that each is unpacked once. It is negative if there is none.
 static enum status open_dataset(const struct h5md_element *element, hid_t place, const char *name,
@@ -130,11 +117,7 @@ static enum status open_dataset(const struct h5md_element *element, hid_t place,
     const hid_t how = H5Dget_create_plist(*dataset);
     const bool here = H5Pget_external_count(how) == 0 && H5Pget_layout(how) != H5D_VIRTUAL;
     H5Pclose(how);
-    if (!here)
-        return fail(element, "has its numbers in other files, which are not read");
-    return mf_h5md_element_is_whole(*dataset)
-               ? STATUS_OK
-               : fail(element, "has not as many bytes as its size asks for: it is damaged");
+    return here ? STATUS_OK : fail(element, "has its numbers in other files, which are not read");
 }
 
 static enum status open_clock(const struct h5md_element *element, hid_t group, const char *name,

@@ -44,10 +44,6 @@ enum status mf_h5md_element_fail(const char *file, const char *what);
 /// Open a group of the file, and of no other that a link would lead to; negative if there is none.
 hid_t mf_h5md_element_group(hid_t place, const char *name);
 
-/// Whether as many bytes are stored as the dataset's extent asks for: HDF5 1.10 does not look, and
-/// crashes where a damaged file has less. Chunks are looked at when they are read.
-bool mf_h5md_element_is_whole(hid_t dataset);
-
 /// A type of texts of `size` bytes, in the characters of `type`, as which HDF5 reads those of fixed
 /// length, however long: longer ones are cut. The caller closes it.
 hid_t mf_h5md_element_text_type(hid_t type, size_t size);

@@ -76,9 +76,7 @@ static enum status read_texts(const char *file, hid_t group, const char *name, b
         return fail(file, "is missing", name);
     const hid_t type = attribute ? H5Aget_type(object) : H5Dget_type(object),
                 space = attribute ? H5Aget_space(object) : H5Dget_space(object);
-    const enum status status = attribute || mf_h5md_element_is_whole(object)
-                                   ? take_texts(object, attribute, type, space, texts)
-                                   : STATUS_BAD_INPUT;
+    const enum status status = take_texts(object, attribute, type, space, texts);
     H5Sclose(space);
     H5Tclose(type);
     if (attribute)
