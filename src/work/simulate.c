@@ -12,6 +12,7 @@
 #include "work/simulate_changes.h"
 #include "work/simulate_observables.h"
 
+#include <math.h>
 #include <string.h>
 #include <sys/resource.h>
 
@@ -325,14 +326,15 @@ static void remove_checkpoint(const struct run *run) {
 enum { MEMORY_SIZE = 64 };
 
 /// The most memory that the program has had at once, and of so many particles that it is theirs
-/// what each of them takes.
-static void describe_memory(const struct run *run, char line[MEMORY_SIZE]) {
+/// what each of them takes. @param[in] share  of the scene's particles, which were simulated
+static void describe_memory(const struct run *run, double share, char line[MEMORY_SIZE]) {
     static const double many = 1e5;
-    const double count = (double)run->simulation.particles.count;
+    const double count = (double)run->simulation.particles.count / share;
     struct rusage used;
     getrusage(RUSAGE_SELF, &used);
-    const double bytes = 1024.0 * (double)used.ru_maxrss;
-    const int length = snprintf(line, MEMORY_SIZE, "%.0f MB of memory", bytes / 1e6);
+    const double bytes = 1024.0 * (double)used.ru_maxrss / share;
+    const int length =
+        snprintf(line, MEMORY_SIZE, "%s%.0f MB of memory", share < 1 ? "about " : "", bytes / 1e6);
     if (count >= many)
         snprintf(line + length, (size_t)(MEMORY_SIZE - length), ", %.0f bytes a particle",
                  bytes / count);
@@ -369,7 +371,7 @@ static enum status write_finished(struct run *run) {
     remove_checkpoint(run);
     mf_simulate_observables_print(&run->observables, &results, &run->progress);
     print_remarks(run);
-    describe_memory(run, memory);
+    describe_memory(run, 1, memory);
     mf_progress_print(&run->progress, "%llu steps in %.3g s, %s; results in %s",
                       (unsigned long long)run->simulation.step, taken, memory, run->folder.path);
     return STATUS_OK;
@@ -406,18 +408,37 @@ done:
     return status;
 }
 
+/// Of many particles a part, at their density, tells what each takes, unless they are placed by
+/// hand or bound to each other. Returns which part it is.
+static double take_part(struct simulation_setup *setup) {
+    static const double enough = 2e5;
+    const double share = enough / (double)setup->placement.count;
+    if (share >= 1 || setup->placement.kind == PLACEMENT_FILE || setup->interactions > 0 ||
+        setup->integrator->solvent_particles)
+        return 1;
+    setup->placement.count = (int64_t)enough;
+    if (setup->composition.types > 0) {
+        setup->composition = mf_composition_scaled(&setup->composition, (int64_t)enough);
+        setup->placement.count = mf_composition_particles(&setup->composition);
+    }
+    for (int axis = 0; axis < setup->box.dimensions; axis++)
+        setup->box.length[axis] *= pow(share, 1.0 / setup->box.dimensions);
+    return share;
+}
+
 enum status mf_simulate_explain(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
     char memory[MEMORY_SIZE];
     NEW_ARRAY(run, 1);
     CHECK(read_file(run, file, options));
+    const struct simulation_setup whole = run->scene.setup;
+    const double share = take_part(&run->scene.setup);
     // All that a run refuses before its first step.
     CHECK(begin_measuring(run, file));
     mf_explain_scale(stdout, &run->scene.units);
-    mf_explain_scene(stdout, &run->scene.setup, &run->scene.units, run->observables.use,
-                     run->plan.every);
-    describe_memory(run, memory);
+    mf_explain_scene(stdout, &whole, &run->scene.units, run->observables.use, run->plan.every);
+    describe_memory(run, share, memory);
     printf("%s\n", memory);
 done:
     clear(run);
