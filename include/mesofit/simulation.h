@@ -70,6 +70,10 @@ typedef double mesofit_force(void *context, size_t count, const uint32_t *id,
 MESOFIT_API void mesofit_simulation_set_force(struct mesofit_simulation *simulation,
                                               mesofit_force *force, void *context);
 
+/** End what runs with it in another thread between two steps: INTERRUPTED, after which it can go
+ * on. Nothing if nothing runs. Also from a handler of a signal. */
+MESOFIT_API void mesofit_simulation_stop(struct mesofit_simulation *simulation);
+
 /** Advance by `steps` steps. Fails: UNSTABLE, NO_MEMORY, INTERRUPTED. */
 MESOFIT_API enum mesofit_status mesofit_simulation_run(struct mesofit_simulation *simulation,
                                                        uint64_t steps);

@@ -12,10 +12,23 @@ from . import _library
 _FLAGS = ("force", "resume", "static", "allow-truncated", "bands", "project")
 
 
-def said(text: str) -> str:
-    """A line of the program with its options as the functions here name them."""
-    return re.sub(r"(?<![\w-])--([a-z]+(?:-[a-z]+)*)",
-                  lambda found: found[1].replace("-", "_") + ("=True" if found[1] in _FLAGS else ""), text)
+#: Options that have other names here.
+_NAMES = {"s": "structure", "o": "folder"}
+
+
+def said(text: str, frames: bool = False) -> str:
+    """A line of the program with its options as the functions here, or `Frames`, name them. What
+    stands in quotes is a command of the shell."""
+    names = {**_NAMES, **({"file-time-step": "times"} if frames else {})}
+
+    def name(found: re.Match[str]) -> str:
+        option = found[1] or found[2]
+        flag = "=True" if option in _FLAGS else ""
+        return names.get(option, option.replace("-", "_")) + flag
+    parts = text.split('"')
+    parts[::2] = [re.sub(r"(?<![\w-])(?:--([a-z]+(?:-[a-z]+)*)|-([so])(?![\w-]))", name, part)
+                  for part in parts[::2]]
+    return '"'.join(parts)
 
 
 class Error(Exception):

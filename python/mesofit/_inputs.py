@@ -8,6 +8,7 @@ import json
 import math
 import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any, Callable, Union
 
 import numpy as np
@@ -32,6 +33,11 @@ def encode(text: Any, what: str = "a text") -> bytes:
     return os.fsencode(text)
 
 
+def absolute(path: Any, what: str) -> Path:
+    """A path for results: the process may be elsewhere when they are written, or read."""
+    return Path(os.path.abspath(os.fsdecode(encode(path, what))))
+
+
 def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """`base` with `changes` in it, at all depths (RFC 7396); None removes."""
     result = dict(base)
@@ -46,12 +52,31 @@ def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]
     return result
 
 
-def numbers(values: Any, what: str, shape: tuple[int | None, ...]) -> Array:
-    """A contiguous array of doubles of that shape, None being any length."""
+def _is_masked(values: Any) -> bool:
+    if isinstance(values, (list, tuple)):
+        return any(_is_masked(value) for value in values)
+    return isinstance(values, np.ma.MaskedArray) and bool(np.any(values.mask))
+
+
+def array_of(values: Any, what: str) -> Array:
+    """An array of doubles. What is masked has no value: numpy would give what is beneath."""
+    if _is_masked(values):
+        raise InputError(f"{what}: values are masked; leave them out, or fill them")
     try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
+        return np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError) as fault:
         raise InputError(f"{what}: {fault}") from None
+
+
+def read_only(array: Array) -> Array:
+    """A copy, so that what is written to it would be lost in silence."""
+    array.flags.writeable = False
+    return array
+
+
+def numbers(values: Any, what: str, shape: tuple[int | None, ...]) -> Array:
+    """A contiguous array of doubles of that shape, None being any length."""
+    array = np.ascontiguousarray(array_of(values, what))
     fits = array.ndim == len(shape) and all(
         n is None or n == m for n, m in zip(shape, array.shape))
     if not fits:
@@ -100,6 +125,8 @@ class Memory:
                     plain[key] = self._plain(member, inside)
             return plain
         if isinstance(value, np.ndarray):
+            if _is_masked(value):
+                raise InputError(f"{path}: values are masked; leave them out, or fill them")
             return value.tolist()
         if isinstance(value, np.generic):
             return value.item()
@@ -136,7 +163,7 @@ def _box(box: Any) -> Array:
     """Vectors of a box, one a row, of three edges, of edges and angles in degrees, or of vectors."""
     if box is None:
         return np.zeros((3, 3))
-    array = np.asarray(box, dtype=np.float64)
+    array = array_of(box, "box")
     if array.shape == (3, 3):
         return array
     if array.shape == (3,):
@@ -228,7 +255,7 @@ class Frames:
         self.count, self.particles = at.shape[0], at.shape[1]
         speed = None if velocities is None else numbers(velocities, "velocities", at.shape)
         when = None if times is None else numbers(times, "times", (self.count,))
-        given = np.zeros((3, 3)) if box is None else np.asarray(box, dtype=np.float64)
+        given = np.zeros((3, 3)) if box is None else array_of(box, "box")
         each = given.ndim > 1 and given.shape != (3, 3)
         if each and len(given) != self.count:
             raise InputError(f"box: {len(given)} boxes of {self.count} frames")
@@ -250,13 +277,13 @@ class Frames:
                 return 0
             if number == 0 and not self.count:
                 self._first = got  # the library asks for it twice
-            self._fill(got, frame.contents)
+            self._fill(got, number, frame.contents)
             return 1
         except BaseException as fault:  # noqa: B902 - raised again where the run was begun
             self.fault = fault
             return -1
 
-    def _fill(self, got: Any, frame: Any) -> None:
+    def _fill(self, got: Any, number: int, frame: Any) -> None:
         if isinstance(got, np.ndarray):
             got = {"positions": got}
         positions = numbers(got["positions"], "positions", (self.particles, 3))
@@ -264,7 +291,9 @@ class Frames:
         if velocities is not None:
             velocities = numbers(velocities, "velocities", (self.particles, 3))
         time = got.get("time")
-        frame.time = math.nan if time is None else float(time)
+        frame.time = math.nan if time is None else float(array_of(time, "time"))
+        if time is not None and not math.isfinite(frame.time):
+            raise InputError(f"frame {number + 1}: its time, {frame.time}, is not finite")
         frame.box[:] = _box(got.get("box")).reshape(9).tolist()
         frame.positions = pointer(positions)
         frame.velocities = None if velocities is None else pointer(velocities)

@@ -151,6 +151,7 @@ FUNCTIONS = {
     "mesofit_simulation_parse": (c_void_p, [c_char_p, POINTER(Table), c_size_t]),
     "mesofit_simulation_free": (None, [c_void_p]),
     "mesofit_simulation_set_force": (None, [c_void_p, FORCE, c_void_p]),
+    "mesofit_simulation_stop": (None, [c_void_p]),
     "mesofit_simulation_run": (c_int, [c_void_p, c_uint64]),
     "mesofit_simulation_text": (c_char_p, [c_void_p]),
     "mesofit_simulation_step": (c_uint64, [c_void_p]),

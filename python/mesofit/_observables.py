@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _library as c
 from ._errors import InputError
-from ._inputs import encode
+from ._inputs import array_of, encode, read_only
 
 
 class Observables:
@@ -48,13 +48,11 @@ class Observables:
                  types: Any, box: Any, room: int, values: Any) -> int:
             try:
                 if not kept:
-                    # Copies: a function may keep what it is given.
                     shape = (count, dimensions)
                     kept.append(_numbers(name, function(
-                        np.ctypeslib.as_array(positions, shape).copy(),
-                        np.ctypeslib.as_array(velocities, shape).copy() if velocities else None,
-                        np.ctypeslib.as_array(types, (count,)).copy(),
-                        np.ctypeslib.as_array(box, (dimensions,)).copy())))
+                        _copy(positions, shape),
+                        _copy(velocities, shape) if velocities else None,
+                        _copy(types, (count,)), _copy(box, (dimensions,)))))
                 size = int(kept[0].size)
                 if size <= room:
                     np.ctypeslib.as_array(values, (size,))[:] = kept.pop()
@@ -65,14 +63,16 @@ class Observables:
         return c.OBSERVABLE(call)
 
 
+def _copy(values: Any, shape: tuple[int, ...]) -> Any:
+    """A function may keep what it is given."""
+    return read_only(np.ctypeslib.as_array(values, shape).copy())
+
+
 def _numbers(name: str, answer: Any) -> Any:
     """What a function answers, as numbers one behind the other."""
     if answer is None:
         raise InputError(f"observable {name!r}: expected a number or an array, found None")
-    try:
-        numbers = np.asarray(answer, dtype=np.float64).ravel()
-    except (TypeError, ValueError) as fault:
-        raise InputError(f"observable {name!r}: expected a number or an array: {fault}") from None
+    numbers = array_of(answer, f"observable {name!r}: expected a number or an array").ravel()
     if numbers.size == 0:
         raise InputError(f"observable {name!r}: an empty array has no value")
     return numbers

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _library as c
-from ._errors import InputError, check, fail
+from ._errors import InputError, check
 from ._library import Array
 from ._inputs import Memory, numbers, pointer
+from ._run import Owned
 from ._simulation import _count
 from ._work import Content, _lend
 
@@ -72,8 +73,10 @@ class Curve(NamedTuple):
     error: Array
 
 
-class Problem:
+class Problem(Owned):
     """A fit whose loop is the caller's: step by step, or by an optimiser of one's own.
+
+    Its memory goes with it, at the end of ``with Problem(…) as problem:``, or by `close`.
 
     Parameters
     ----------
@@ -89,63 +92,34 @@ class Problem:
         With the line that the program would print.
     """
 
+    _free = "mesofit_fit_free"
+
     def __init__(self, run: Content, *, threads: int = 1, **keys: Any) -> None:
         memory = Memory()
         if isinstance(keys.get("method"), str):
             keys["method"] = {"name": keys["method"]}
         word = _lend(run, keys, "run", memory)
         inputs = memory.lend()
-        self._lock = threading.Lock()
-        self._stop = False
+        stopping = self._stopping = threading.Event()  # the progress must not know of this
         self._broken = False
-        self._progress = c.FIT_PROGRESS(lambda context, iteration, done, total: int(self._stop))
+        self._progress = c.FIT_PROGRESS(
+            lambda context, iteration, done, total: int(stopping.is_set()))
         threads = _count(threads, "threads", 1)
         if word in memory.texts:
-            self._pointer = c.lib.mesofit_fit_parse(
-                memory.texts[word].encode(), inputs.tables, inputs.table_count, threads,
-                self._progress, None)
+            self._make(c.lib.mesofit_fit_parse, memory.texts[word].encode(), inputs.tables,
+                       inputs.table_count, threads, self._progress, None)
         else:
-            self._pointer = c.lib.mesofit_fit_open(word.encode(), threads, self._progress,
-                                                       None)
-        if not self._pointer:
-            raise fail(c.BAD_INPUT, c.message())
+            self._make(c.lib.mesofit_fit_open, word.encode(), threads, self._progress, None)
 
-    def __del__(self) -> None:
-        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
-            c.lib.mesofit_fit_free(self._pointer)
-            self._pointer = None
-
-    def __reduce__(self) -> Any:
-        raise TypeError("a fit that is stepped cannot be pickled")
-
-    def _call(self, function: Any, *arguments: Any) -> int:
-        """In a thread of its own, so that Ctrl-C is seen; one call at a time."""
-        answer: list[Any] = [c.INTERRUPTED, ""]
-        ended = threading.Event()
-
-        def work() -> None:
-            try:
-                status = function(self._pointer, *arguments)
-                answer[:] = [status, c.message() if status != c.OK else ""]
-            finally:
-                ended.set()
-
+    def _call(self, function: Any, *arguments: Any) -> None:
+        """One call at a time."""
         with self._lock:
             if self._broken:
                 raise InputError("the fit has failed or was interrupted: begin a new one")
-            self._stop, interrupted = False, False
-            threading.Thread(target=work, name="mesofit", daemon=True).start()
-            while not ended.is_set():
-                try:
-                    ended.wait(0.1)
-                except KeyboardInterrupt:
-                    self._stop = interrupted = True
-            self._broken = function is c.lib.mesofit_fit_iterate and answer[0] != c.OK
-        if interrupted:
-            raise KeyboardInterrupt(answer[1])
-        if answer[0] != c.OK:
-            raise fail(*answer)
-        return int(answer[0])
+            self._stopping.clear()
+            self._broken = function is c.lib.mesofit_fit_iterate
+            self._work(function, *arguments, stop=self._stopping.set)
+            self._broken = False
 
     # By the method of the run file ----------------------------------------------------------------
 
@@ -276,7 +250,7 @@ class Problem:
         return self.evaluate(coefficients).error
 
 
-class Optimiser:
+class Optimiser(Owned):
     """An optimiser for noisy errors in a box, by ask and tell.
 
     Parameters
@@ -296,6 +270,8 @@ class Optimiser:
         With the line that the program would print.
     """
 
+    _free = "mesofit_optimiser_free"
+
     def __init__(self, name: str, dimensions: int, *, minimum: float = 0.0, maximum: float = 1.0,
                  start: Any = None, seed: int = 1, **settings: Any) -> None:
         self.dimensions = _count(dimensions, "dimensions", 1)
@@ -305,19 +281,9 @@ class Optimiser:
         except (TypeError, ValueError) as fault:
             raise InputError(f"settings: {fault}") from None
         self._asked: int | None = None
-        self._pointer = c.lib.mesofit_optimiser_create(
-            str(name).encode(), text, self.dimensions, float(minimum), float(maximum),
-            None if begin is None else pointer(begin), _count(seed, "seed", 0))
-        if not self._pointer:
-            raise fail(c.BAD_INPUT, c.message())
-
-    def __del__(self) -> None:
-        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
-            c.lib.mesofit_optimiser_free(self._pointer)
-            self._pointer = None
-
-    def __reduce__(self) -> Any:
-        raise TypeError("an optimiser cannot be pickled")
+        self._make(c.lib.mesofit_optimiser_create, str(name).encode(), text, self.dimensions,
+                   float(minimum), float(maximum), None if begin is None else pointer(begin),
+                   _count(seed, "seed", 0))
 
     def ask(self) -> Array:
         """Candidates to be measured next.

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from . import _library as c
-from ._errors import InputError, check, fail
-from ._inputs import Memory, PathLike, encode
+from ._errors import FileError, InputError, check, fail
+from ._inputs import Memory, PathLike, absolute, encode
 from ._run import Folder, Outcome, carry_out
 from ._table import Curves, Table
 
@@ -142,7 +142,12 @@ class Result:
                 raise fail(c.IO, c.message())
             return str(content.decode(errors="replace"))
 
+    def _check_there(self) -> None:
+        if not self.folder.is_dir():
+            raise FileError(f"{self.folder}: the folder of the result is gone")
+
     def _json(self, file: str) -> dict[str, Any]:
+        self._check_there()
         return dict(json.loads(self.text(file))) if (self.folder / file).exists() else {}
 
     @property
@@ -234,7 +239,7 @@ class Result:
         FileError
             The folder cannot be written.
         """
-        target = Path(engine if folder is None else folder)
+        target = absolute(engine if folder is None else folder, "folder")
         words = ["export", _path(self.folder), "--engine", engine, "-o", _path(target)]
         words += [word for word, wanted in (("--bands", bands), ("--project", project),
                                             ("--force", force)) if wanted]
@@ -261,7 +266,7 @@ class Result:
         OSError
             It cannot be written, or is there already.
         """
-        return Path(shutil.copytree(self.folder, folder))
+        return Path(shutil.copytree(self.folder, absolute(folder, "folder")))
 
     def plot(self) -> Any:
         """Draw what there is with matplotlib: g with its target, Φ, ω, errors by iteration.
@@ -282,6 +287,7 @@ class Result:
         return _plot.draw_result(self)
 
     def __getstate__(self) -> dict[str, Any]:
+        self._check_there()
         # Of a run that has ended nobody needs what it would go on from.
         over = self.status != "interrupted"
         files = {str(path.relative_to(self.folder)): path.read_bytes()

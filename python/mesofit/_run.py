@@ -12,13 +12,13 @@ import tempfile
 import threading
 import warnings
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from . import _library as c
-from ._errors import InterruptedWarning, MesofitWarning, UnconvergedWarning, fail, said
-from ._inputs import Memory, encode
+from ._errors import InputError, InterruptedWarning, MesofitWarning, UnconvergedWarning, fail, said
+from ._inputs import Memory, absolute, encode
 from ._progress import Progress
 
 log = logging.getLogger("mesofit")
@@ -35,7 +35,7 @@ class Folder:
         if path is None:
             path = tempfile.mkdtemp(prefix="mesofit-")
             weakref.finalize(self, _remove, path, os.getpid())
-        self.path = Path(os.fsdecode(encode(path, "folder")))
+        self.path = absolute(path, "folder")
 
 
 def _remove(path: str, process: int) -> None:
@@ -48,7 +48,7 @@ class Outcome:
 
     def __init__(self) -> None:
         self.status, self.message = c.OK, ""
-        self.lines: list[str] = []
+        self.lines: list[str] = []  # with names of Python
 
     def warn(self) -> None:
         """Turn what was said, and how it has ended, into Python's warnings."""
@@ -57,9 +57,9 @@ class Outcome:
             if line.startswith(_WARNING):
                 warnings.warn(line[len(_WARNING):], MesofitWarning, stacklevel=level)
         if self.status == c.UNCONVERGED:
-            warnings.warn(said(self.message), UnconvergedWarning, stacklevel=level)
+            warnings.warn(self.message, UnconvergedWarning, stacklevel=level)
         elif self.status == c.INTERRUPTED:
-            warnings.warn(said(self.message), InterruptedWarning, stacklevel=level)
+            warnings.warn(self.message, InterruptedWarning, stacklevel=level)
 
 
 def _level() -> int:
@@ -70,30 +70,131 @@ def _level() -> int:
     return level
 
 
+_STACK = 8 << 20  # of a thread that works for the library, whatever threads of the user's have [bytes]
+_beginning = threading.Lock()  # the size of stacks is common to all threads that begin
+# A child of a fork has the lock, but not the thread that would open it.
+os.register_at_fork(before=_beginning.acquire, after_in_parent=_beginning.release,
+                    after_in_child=_beginning.release)
+
+
+class Work:
+    """A call of the library in a thread of its own: with a stack that suffices, while this one sees
+    Ctrl-C. It keeps what is called, and all that is lent to it, as long as it works."""
+
+    def __init__(self, function: Callable[..., Any], *arguments: Any) -> None:
+        self.function, self.arguments = function, arguments
+        self.answer: Any = None
+        self.message = ""
+        # Not Thread.join: a thread whose join was interrupted counts as ended (CPython 3.11).
+        self.begun, self.ended = threading.Event(), threading.Event()
+
+    def _do(self) -> None:
+        self.begun.set()
+        try:
+            self.answer = self.function(*self.arguments)
+            self.message = c.message()
+        finally:
+            self.ended.set()
+
+    def _begin(self) -> None:
+        thread = threading.Thread(target=self._do, name="mesofit", daemon=True)
+        with _beginning:
+            before = threading.stack_size(_STACK)
+            try:
+                thread.start()
+            finally:
+                threading.stack_size(before)
+
+    def wait(self, stop: Callable[[], Any], look: Callable[[], Any] = lambda: None) -> int:
+        """Do it, asking it to stop from the first Ctrl-C on. Returns how many there were."""
+        interrupts = 0
+        try:
+            self._begin()
+        except KeyboardInterrupt:
+            if not self.begun.wait(1):
+                raise
+            interrupts = 1
+        while not self.ended.is_set():
+            try:
+                if interrupts > 0:
+                    stop()  # again and again: the first may have come before it was called
+                self.ended.wait(_LOOK)
+                look()
+            except KeyboardInterrupt:
+                interrupts += 1
+        return interrupts
+
+
+class Owned:
+    """An object of the library, which `close`, the end of `with`, or the last who knows it frees."""
+
+    _handle: Any = None
+    _free = ""  # the function that frees it
+
+    def _make(self, function: Any, *arguments: Any) -> None:
+        self._lock = threading.Lock()  # held while the library works with it
+        work = Work(function, *arguments)
+        interrupts = work.wait(lambda: None)
+        self._handle = work.answer
+        if interrupts > 0:
+            raise KeyboardInterrupt
+        if not self._handle:
+            raise fail(c.BAD_INPUT, work.message)
+
+    def _work(self, function: Any, *arguments: Any, stop: Callable[[], Any]) -> None:
+        """Call the library, with the lock held."""
+        work = Work(function, self._pointer, *arguments)
+        if work.wait(stop) > 0:
+            raise KeyboardInterrupt(work.message)
+        if work.answer != c.OK:
+            raise fail(work.answer, work.message)
+
+    @property
+    def _pointer(self) -> Any:
+        if not self._handle:
+            raise InputError(f"the {type(self).__name__} is closed")
+        return self._handle
+
+    def close(self) -> None:
+        """Free its memory now; nothing can be asked of it any more. The end of ``with`` does this."""
+        if not self._handle:
+            return
+        if not self._lock.acquire(blocking=False):
+            raise InputError(f"the {type(self).__name__} is running")
+        handle, self._handle = self._handle, None
+        getattr(c.lib, self._free)(handle)
+        self._lock.release()
+
+    def __enter__(self) -> Any:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if c.lib is not None:  # None: Python ends
+            self.close()
+
+    def __reduce__(self) -> Any:
+        raise TypeError(f"a {type(self).__name__} cannot be pickled")
+
+
 class _Run:
     def __init__(self, words: Sequence[str], memory: Memory) -> None:
         self.outcome = Outcome()
-        # Not Thread.join: a thread whose join was interrupted counts as ended (CPython 3.11).
-        self.ended = threading.Event()
         self.memory, self.inputs = memory, memory.lend()
         self.words = (ctypes.c_char_p * len(words))(*[encode(word, "a word") for word in words])
         self.run = c.lib.mesofit_run_create()
         if not self.run:
             raise MemoryError("out of memory")
 
-    def work(self) -> None:
-        outcome = self.outcome
-        try:
-            outcome.status = c.lib.mesofit_run_words(self.run, len(self.words), self.words,
-                                                         self.inputs)
-            outcome.message = c.message() if outcome.status != c.OK else ""
-        finally:
-            self.ended.set()
+    def work(self) -> int:
+        return int(c.lib.mesofit_run_words(self.run, len(self.words), self.words, self.inputs))
 
     def look(self, progress: Progress) -> None:
         lines = self.outcome.lines
         while (line := c.lib.mesofit_run_line(self.run, len(lines))) is not None:
-            lines.append(line.decode(errors="replace"))
+            lines.append(said(line.decode(errors="replace"), self.memory.frames is not None))
             log.info("%s", lines[-1])
             progress.say(lines[-1])
         if progress.wanted:
@@ -118,22 +219,20 @@ def carry_out(words: Sequence[str], memory: Memory | None = None,
     memory = Memory() if memory is None else memory
     shown = Progress(progress)
     run = _Run(words, memory)
-    interrupts = 0
-    # It keeps the run, and all that is lent to it, as long as it works.
-    threading.Thread(target=run.work, name="mesofit", daemon=True).start()
-    while not run.ended.is_set():
+    work = Work(run.work)
+
+    def look() -> None:
         try:
-            run.ended.wait(_LOOK)
             run.look(shown)
-        except KeyboardInterrupt:
-            interrupts += 1
-            run.stop()
         except Exception:  # of a stream that nobody reads any more
             log.debug("progress cannot be shown", exc_info=True)
             shown.wanted = False
-    run.look(shown)
+    interrupts = work.wait(run.stop, look)
+    look()
     shown.end()
     outcome = run.outcome
+    outcome.status = work.answer
+    outcome.message = said(work.message, memory.frames is not None) if work.answer != c.OK else ""
     for functions in (memory.frames, memory.observables):
         if functions is not None and functions.fault is not None:
             raise functions.fault

@@ -4,19 +4,16 @@
 from __future__ import annotations
 
 import json
-import threading
-import time
 from typing import Any, Callable, NamedTuple
 
 import numpy as np
 
 from . import _library as c
-from ._errors import InputError, fail
+from ._errors import InputError
 from ._library import Array
-from ._inputs import Memory, pointer
+from ._inputs import Memory, pointer, read_only
+from ._run import Owned
 from ._work import Content, Scene, _read
-
-_PIECE = 0.2  # seconds between looks at what else there is to be done, such as Ctrl-C
 
 
 class Rdf(NamedTuple):
@@ -54,10 +51,11 @@ class Means(NamedTuple):
     pressure_error: float
 
 
-class Simulation:
+class Simulation(Owned):
     """A simulation that is stepped, looked at, and pushed by forces of one's own.
 
-    All numbers are in reduced units; `units` says what 1 is of a scene that has units.
+    All numbers are in reduced units; `units` says what 1 is of a scene that has units. Its memory
+    goes with it, at the end of ``with Simulation(…) as simulation:``, or by `close`.
 
     Parameters
     ----------
@@ -71,25 +69,16 @@ class Simulation:
         With the line that the program would print; also by what is asked of it while it runs.
     """
 
+    _free = "mesofit_simulation_free"
+
     def __init__(self, scene: Content, **keys: Any) -> None:
         memory = Memory()
         memory.add_json("scene", Scene(_read(scene), **keys))
         inputs = memory.lend()
-        self._fault: BaseException | None = None
-        self._lock = threading.Lock()  # held while the library works with it
+        self._faults: list[BaseException] = []  # of the force, which must not know of this
         self._force = c.FORCE(0)
-        self._pointer = c.lib.mesofit_simulation_parse(
-            memory.texts["scene"].encode(), inputs.tables, inputs.table_count)
-        if not self._pointer:
-            raise fail(c.BAD_INPUT, c.message())
-
-    def __del__(self) -> None:
-        if getattr(self, "_pointer", None) and c.lib is not None:  # None: Python ends
-            c.lib.mesofit_simulation_free(self._pointer)
-            self._pointer = None
-
-    def __reduce__(self) -> Any:
-        raise TypeError("a simulation that is stepped cannot be pickled")
+        self._make(c.lib.mesofit_simulation_parse, memory.texts["scene"].encode(), inputs.tables,
+                   inputs.table_count)
 
     # What it is -----------------------------------------------------------------------------------
 
@@ -104,7 +93,7 @@ class Simulation:
     @property
     def box(self) -> Array:
         """Edges of the box, shape (dimensions,) [lambda]."""
-        return np.array(self.scene["edges"], dtype=np.float64)
+        return read_only(np.array(self.scene["edges"], dtype=np.float64))
 
     @property
     def units(self) -> dict[str, float]:
@@ -136,16 +125,18 @@ class Simulation:
         result = np.empty((count, self.dimensions))
         for axis in range(self.dimensions):
             result[ids, axis] = np.ctypeslib.as_array(axis_of(self._pointer, axis), (count,))
-        return result
+        return read_only(result)
 
     @property
     def positions(self) -> Array:
-        """A copy, shape (particles, dimensions), by the number of the particle [lambda]."""
+        """A copy that is read-only, shape (particles, dimensions), by the number of the particle
+        [lambda]."""
         return self._by_id(c.lib.mesofit_simulation_positions)
 
     @property
     def velocities(self) -> Array:
-        """A copy, shape (particles, dimensions), by the number of the particle [lambda/tau]."""
+        """A copy that is read-only, shape (particles, dimensions), by the number of the particle
+        [lambda/tau]."""
         return self._by_id(c.lib.mesofit_simulation_velocities)
 
     # What it does ---------------------------------------------------------------------------------
@@ -157,7 +148,7 @@ class Simulation:
         ----------
         force : callable, or a compiled function of the type `FORCE`
             ``force(positions, forces, ids)``, once or more often in each step: arrays of shape
-            (dimensions, particles), in the order of `ids`. It adds to `forces` and returns the
+            (particles, dimensions), in the order of `ids`. It adds to `forces` and returns the
             potential energy of all, or None. A Python function costs some 10 µs a call beside what
             it does; a function of numba (``@cfunc(…)``) or C costs nothing.
 
@@ -180,24 +171,25 @@ class Simulation:
         c.lib.mesofit_simulation_set_force(self._pointer, self._force, None)
 
     def _wrap(self, force: Callable[..., Any]) -> Any:
-        dimensions = self.dimensions
+        dimensions, faults = self.dimensions, self._faults
 
         def call(context: Any, count: int, ids: Any, positions: Any, forces: Any) -> float:
-            if self._fault is not None:
+            if faults:
                 return 0.0
             try:
                 shape = (count,)
+                # Axis by axis in memory, as the library has them.
                 at = np.stack([np.ctypeslib.as_array(positions[d], shape)
-                               for d in range(dimensions)])
+                               for d in range(dimensions)]).T
                 added = np.zeros_like(at)
-                energy = force(at, added, np.ctypeslib.as_array(ids, shape).copy())
+                energy = force(read_only(at), added, np.ctypeslib.as_array(ids, shape).copy())
                 if added.shape != at.shape or not np.isfinite(added).all():
                     raise InputError("force: a force is not finite")
                 for d in range(dimensions):
-                    np.ctypeslib.as_array(forces[d], shape)[:] += added[d]
+                    np.ctypeslib.as_array(forces[d], shape)[:] += added[:, d]
                 return 0.0 if energy is None else float(energy)
             except BaseException as fault:  # noqa: B902 - raised again by run
-                self._fault = fault
+                faults.append(fault)
                 return 0.0
         return c.FORCE(call)
 
@@ -208,19 +200,18 @@ class Simulation:
     def _call(self, function: Any, *arguments: Any) -> None:
         if not self._lock.acquire(blocking=False):
             raise InputError("the simulation is running")
-        self._fault = None
+        self._faults.clear()
         try:
-            status = function(self._pointer, *arguments)
-            text = c.message() if status != c.OK else ""
+            self._work(function, *arguments,
+                       stop=lambda: c.lib.mesofit_simulation_stop(self._pointer))
         finally:
             self._lock.release()
-        if self._fault is not None:
-            raise self._fault
-        if status != c.OK:
-            raise fail(status, text)
+            if self._faults:
+                raise self._faults.pop()
 
     def run(self, steps: int) -> "Simulation":
-        """Advance. Ctrl-C is seen between steps, after which it can go on.
+        """Advance. Ctrl-C is seen between steps, after which it can go on. A call costs some 50 µs
+        beside its steps.
 
         Parameters
         ----------
@@ -236,19 +227,12 @@ class Simulation:
         UnstableError
             It blew up.
         """
-        left, piece = _count(steps, "steps", 0), 1
-        while left > 0:
-            now = min(piece, left)
-            begin = time.perf_counter()
-            self._call(c.lib.mesofit_simulation_run, now)
-            left -= now
-            if time.perf_counter() - begin < _PIECE / 2:
-                piece = 2 * piece
+        self._call(c.lib.mesofit_simulation_run, _count(steps, "steps", 0))
         return self
 
     def rdf(self, *, range: float = 0.0, bins: int = 100, samples: int = 200,
             every: int = 25) -> Rdf:
-        """Run samples · every steps and measure g(r).
+        """Run samples · every steps and measure g(r). Ctrl-C ends it between steps, without a g(r).
 
         Parameters
         ----------
@@ -279,7 +263,8 @@ class Simulation:
         return Rdf(r, g, error)
 
     def means(self, *, samples: int = 200, every: int = 25) -> Means:
-        """Run samples · every steps and take means of temperature, energy and pressure.
+        """Run samples · every steps and take means of temperature, energy and pressure. Ctrl-C as
+        of `rdf`.
 
         Parameters
         ----------
@@ -302,6 +287,8 @@ class Simulation:
         return Means(*(getattr(means, name) for name in Means._fields))
 
     def __repr__(self) -> str:
+        if not self._handle:
+            return "<Simulation, closed>"
         return f"<Simulation of {len(self)} particles at step {self.step}>"
 
 

@@ -13,9 +13,9 @@ from typing import Any, Callable, Union
 import numpy as np
 
 from . import _library as c
-from ._errors import InputError, said
+from ._errors import InputError
 from ._library import Array
-from ._inputs import Frames, Memory, PathLike, from_universe, merge
+from ._inputs import Frames, Memory, PathLike, absolute, from_universe, merge
 from ._observables import Observables
 from ._result import Result, _path
 from ._run import Folder, carry_out
@@ -145,7 +145,7 @@ def _carry_out(words: list[str], memory: Memory, folder: PathLike | None, resume
     outcome = carry_out(words, memory, progress)
     result = Result(place, outcome)
     if outcome.status == c.INTERRUPTED and not (place.path / "summary.json").exists():
-        raise KeyboardInterrupt(said(outcome.message))
+        raise KeyboardInterrupt(outcome.message)
     outcome.warn()
     return result
 
@@ -375,7 +375,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         units=units, allow_truncated=allow_truncated, file_units=file_units,
         file_time_step=file_time_step, file_group=file_group,
         box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),
-        beads=None if beads is None else Path(beads), threads=threads)
+        beads=None if beads is None else absolute(beads, "beads"), threads=threads)
     try:
         return _carry_out(words, memory, folder, False, force, progress)
     finally:
@@ -430,13 +430,14 @@ def import_votca(settings: PathLike, folder: PathLike = "imported", *,
     if isinstance(box, str) or isinstance(count, str):
         raise InputError("import_votca: box is a number or three, count a dict: "
                          "box=4.031, count={'CG': 2180}")
-    words = ["import", "votca", _path(settings), "-o", _path(folder)]
+    place = absolute(folder, "folder")
+    words = ["import", "votca", _path(settings), "-o", str(place)]
     words += _options(
         box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),
         count=None if count is None else ",".join(f"{type}={n}" for type, n in count.items()),
         force=force)
     carry_out(words, Memory(), progress)
-    return Path(folder) / "run.json"
+    return place / "run.json"
 
 
 def _frames(trajectory: Any, memory: Memory) -> tuple[list[str], Callable[[], Any]]:

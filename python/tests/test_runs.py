@@ -13,7 +13,7 @@ import pytest
 from conftest import ROOT, SCENE, run_program
 
 import mesofit
-from mesofit import _run
+from mesofit import _library, _run
 
 WATER = ROOT / "tests" / "trajectories"
 
@@ -176,11 +176,25 @@ def interrupt_once(monkeypatch, when):
     monkeypatch.setattr(_run._Run, "look", look_and_interrupt)
 
 
-def test_interrupted_simulation_goes_on_with_the_same_bits(tmp_path, monkeypatch):
-    long = {**SCENE, "measure": {"equilibration": 0, "samples": 4000, "every": 10}}
+def steps_of(run):
+    now = _library.RunProgress()
+    _library.lib.mesofit_run_progress(run.run, now)
+    return now.done
+
+
+def test_simulation_interrupted_before_its_first_sample_has_no_results(tmp_path, monkeypatch):
     interrupt_once(monkeypatch, lambda run: True)
     with pytest.raises(KeyboardInterrupt, match="continue with resume=True"):
-        mesofit.simulate(long, folder=tmp_path / "out", threads=1)
+        mesofit.simulate(SCENE, folder=tmp_path / "out", measure={"equilibration": 10**9})
+    assert (tmp_path / "out" / "checkpoint.bin").exists()
+
+
+def test_interrupted_simulation_goes_on_with_the_same_bits(tmp_path, monkeypatch):
+    long = {**SCENE, "measure": {"equilibration": 0, "samples": 4000, "every": 10}}
+    interrupt_once(monkeypatch, lambda run: steps_of(run) > 1000)
+    with pytest.warns(mesofit.InterruptedWarning, match="continue with resume=True"):
+        stopped = mesofit.simulate(long, folder=tmp_path / "out", threads=1)
+    assert stopped.status == "interrupted" and len(stopped["rdf"]) == 32
     assert (tmp_path / "out" / "checkpoint.bin").exists()
     run = mesofit.simulate(long, folder=tmp_path / "out", threads=1, resume=True)
     whole = mesofit.simulate(long, threads=1)

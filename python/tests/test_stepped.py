@@ -61,7 +61,7 @@ def test_own_force_does_work():
 
     def force(positions, forces, ids):
         seen.append((positions.shape, sorted(ids) == list(range(20))))
-        forces[0] += 2.0
+        forces[:, 0] += 2.0
     simulation.set_force(force)
     simulation.run(100)
     # The first half step knows the forces of before.
@@ -69,7 +69,7 @@ def test_own_force_does_work():
     assert np.allclose(simulation.velocities[:, 1], v[:, 1])
     moved = (simulation.positions - x - v)[:, 0]
     assert np.allclose(moved - 9 * np.round(moved / 9), 1.0, atol=0.03)
-    assert seen[0] == ((3, 20), True)
+    assert seen[0] == ((20, 3), True)
     simulation.set_force(None)
     v = simulation.velocities
     simulation.run(10)

@@ -9,6 +9,7 @@ from conftest import SCENE
 
 import mesofit
 from mesofit import InputError
+from mesofit._errors import said
 
 
 @pytest.fixture(scope="module")
@@ -108,6 +109,19 @@ def test_options_have_the_names_of_arguments():
         mesofit.measure("x.xtc", temperature=-3)
     with pytest.raises(mesofit.InputError, match="q_range takes a number"):
         mesofit.measure("x.xtc", q_range="far")
+    assert said('give -s, -o DIR or --file-time-step; "gmx trjconv -o traj.xtc --s" makes it, a-o') == (
+        'give structure, folder DIR or file_time_step; "gmx trjconv -o traj.xtc --s" makes it, a-o')
+
+
+def test_hints_and_numbers_are_those_of_frames():
+    positions = np.random.default_rng(1).random((20, 30, 3)) * 2
+    run = mesofit.measure(mesofit.Frames(positions, [2, 2, 2]), temperature=300)
+    assert any("frames have no times (times)" in line for line in run.messages)
+    positions[3, 4, 1] = np.nan
+    with pytest.raises(mesofit.InputError, match="frame 4: the position of atom 5 is not finite"):
+        mesofit.measure(mesofit.Frames(positions, [2, 2, 2]), temperature=300)
+    with pytest.raises(mesofit.InputError, match="frame 3: its time, inf, is not finite"):
+        mesofit.measure(mesofit.Frames(np.ones((3, 2, 3)), [2, 2, 2], times=[0, 1, np.inf]))
 
 
 STEPPED = {

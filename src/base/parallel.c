@@ -97,16 +97,15 @@ static void try_one(struct parallel_call *call, size_t task) {
         status = STATUS_NO_MEMORY;
     const double begin = clock_thread_seconds();
     if (status == STATUS_OK)
-        status = tasks->run(tasks->context, task, result);
+        status = parallel_call_run(call, task, result);
     const double seconds = clock_thread_seconds() - begin;
-#pragma omp critical
-    {
-        if (status == STATUS_OK && call->log)
-            mf_task_log_note(call, task, result);
-        if (status == STATUS_OK && tasks->take)
-            tasks->take(tasks->context, task, result);
-        parallel_call_end_task(call, task, status, mf_status_message(), seconds);
-    }
+    pthread_mutex_lock(&call->lock);
+    if (status == STATUS_OK && call->log)
+        mf_task_log_note(call, task, result);
+    if (status == STATUS_OK && tasks->take)
+        tasks->take(tasks->context, task, result);
+    parallel_call_end_task(call, task, status, mf_status_message(), seconds);
+    pthread_mutex_unlock(&call->lock);
     mf_memory_free(result);
 }
 
@@ -115,9 +114,9 @@ static void try_alone(struct parallel_call *call) {
 #pragma omp parallel for schedule(dynamic)                                                         \
     num_threads(call->tasks->threads) if (call->tasks->threads > 1 && call->left > 1)
     for (size_t task = 0; task < call->tasks->count; task++) {
-        bool wanted;
-#pragma omp critical
-        wanted = parallel_call_wants(call, task);
+        pthread_mutex_lock(&call->lock);
+        const bool wanted = parallel_call_wants(call, task);
+        pthread_mutex_unlock(&call->lock);
         if (wanted)
             try_one(call, task);
     }
@@ -125,7 +124,11 @@ static void try_alone(struct parallel_call *call) {
 
 enum status mf_parallel_try(const struct parallel_tasks *tasks) {
     const double begin = clock_seconds();
-    struct parallel_call call = {.tasks = tasks, .left = tasks->count, .failed = tasks->count};
+    struct parallel_call call = {.tasks = tasks,
+                                 .left = tasks->count,
+                                 .failed = tasks->count,
+                                 .lock = PTHREAD_MUTEX_INITIALIZER,
+                                 .locale = uselocale((locale_t)0)};
     TRY(mf_task_log_begin(&call));
     if (call.left > 0 && tasks->spans && mf_ranks_count() > 1)
         mf_ranks_try(&call);

@@ -5,6 +5,8 @@
 #include "base/parallel.h"
 #include "base/statistics.h"
 
+#include <locale.h>
+#include <pthread.h>
 #include <stdbool.h>
 #include <stdio.h>
 
@@ -19,7 +21,18 @@ struct parallel_call {
     size_t failed;        ///< to a thread; the number of tasks while there is none
     char message[STATUS_MESSAGE_SIZE];
     struct running_mean seconds; ///< of processor time of a task
+    pthread_mutex_t lock;        ///< of all that follows a task, where one process has all tasks
+    locale_t locale;             ///< of who calls: threads have one each
 };
+
+/// Run a task, in whatever thread, with the locale of who called.
+static inline enum status parallel_call_run(const struct parallel_call *call, size_t task,
+                                            void *result) {
+    const locale_t before = uselocale(call->locale);
+    const enum status status = call->tasks->run(call->tasks->context, task, result);
+    uselocale(before);
+    return status;
+}
 
 /// Whether a task may begin: one after a failure need not.
 static inline bool parallel_call_wants(const struct parallel_call *call, size_t task) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/parallel_times.h"
 
+#include "base/process_lock.h"
+
 #include <stdlib.h>
 
 static struct parallel_times seen;
@@ -20,21 +22,20 @@ static struct parallel_size *find(size_t tasks) {
 }
 
 void mf_parallel_times_add(size_t tasks, const struct running_mean *seconds, double waited) {
-#pragma omp critical
-    {
-        struct parallel_size *size = find(tasks);
-        size->rounds++;
-        size->waited += waited;
-        size->done += seconds->count;
-        size->seconds += seconds->count * seconds->mean;
-        if (seconds->mean > 0)
-            size->squares += seconds->squares / (seconds->mean * seconds->mean);
-    }
+    mf_process_lock();
+    struct parallel_size *size = find(tasks);
+    size->rounds++;
+    size->waited += waited;
+    size->done += seconds->count;
+    size->seconds += seconds->count * seconds->mean;
+    if (seconds->mean > 0)
+        size->squares += seconds->squares / (seconds->mean * seconds->mean);
+    mf_process_unlock();
 }
 
 struct parallel_times mf_parallel_times(void) {
-    struct parallel_times times;
-#pragma omp critical
-    times = seen;
+    mf_process_lock();
+    const struct parallel_times times = seen;
+    mf_process_unlock();
     return times;
 }

@@ -201,7 +201,7 @@ static struct task_record *do_task(const struct parallel_call *call, uint64_t ta
     struct task_record head = {.call = call->number, .task = task};
     void *result = or_stop(mf_memory_zeroed(1, tasks->result_size));
     const double begin = clock_thread_seconds();
-    head.status = tasks->run(tasks->context, task, tasks->result_size > 0 ? result : NULL);
+    head.status = parallel_call_run(call, task, tasks->result_size > 0 ? result : NULL);
     head.seconds = clock_thread_seconds() - begin;
     struct task_record *record = or_stop(mf_task_record_create(&head, tasks, result));
     mf_memory_free(result);

@@ -260,8 +260,28 @@ static void print_system(const struct export_job *job, FILE *stream) {
     fprintf(stream, "\n");
 }
 
-/// A folder whose name has one of these can only be run where it is.
-static const char unquotable[] = "'\"$\n\r";
+/// LAMMPS has no quotes around these, and puts others in the place of what is not ASCII.
+static bool is_quotable(const char *path) {
+    for (const char *at = path; *at; at++)
+        if (strchr("'\"$\n\r", *at) || (unsigned char)*at >= 0x80)
+            return false;
+    return true;
+}
+
+/// LAMMPS looks for files where it was started: in this folder, above it as it was written, or
+/// anywhere else as long as it is where it was.
+static void print_place(const struct export_job *job, FILE *stream) {
+    static const char elsewhere[] = "if \"$(is_file(data.mesofit)) == 0\" then";
+    OWNED char *whole = realpath(job->folder, NULL);
+    if (is_quotable(job->folder))
+        fprintf(stream, "%s 'shell cd \"%s\"'\n", elsewhere, job->folder);
+    if (whole && is_quotable(whole) && strcmp(whole, job->folder) != 0)
+        fprintf(stream, "%s 'shell cd \"%s\"'\n", elsewhere, whole);
+    fprintf(stream,
+            "%s \"print 'data.mesofit is not found: start LAMMPS in the folder of this input'\" "
+            "\"quit 1\"\n\n",
+            elsewhere);
+}
 
 static void print_input(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
@@ -276,11 +296,7 @@ static void print_input(const struct export_job *job, FILE *stream) {
             dpd_runs(job) ? "dpd" : "langevin");
     mf_export_dynamics_print(job, "# ", stream);
     fprintf(stream, "\n");
-    if (job->folder[strcspn(job->folder, unquotable)] == '\0')
-        fprintf(stream,
-                "# in this folder, or where it was written from\n"
-                "if \"$(is_file(data.mesofit)) == 0\" then 'shell cd \"%s\"'\n\n",
-                job->folder);
+    print_place(job, stream);
     print_system(job, stream);
     print_thermostat(job, stream);
     fprintf(stream,

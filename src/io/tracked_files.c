@@ -2,6 +2,7 @@
 #include "io/tracked_files.h"
 
 #include "base/memory.h"
+#include "base/process_lock.h"
 #include "base/ranks.h"
 #include "io/tracked_file.h"
 #include "io/partial_file.h"
@@ -9,7 +10,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -20,9 +20,8 @@
 /// [bytes].
 static const int64_t max_read = (int64_t)1 << 30;
 
-/// All folders that are open.
+/// All folders that are open, by the lock of the process.
 static struct tracked_files *all;
-static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
 
 /// A run may take days: the folder is still that which was opened.
 static enum status check_place(const struct tracked_files *own) {
@@ -60,11 +59,11 @@ enum status mf_tracked_files_open(struct tracked_files *own, const char *folder,
     if (own->list.place < 0)
         return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
     CHECK(mf_manifest_read(&own->list));
-    pthread_mutex_lock(&mutex);
+    mf_process_lock();
     own->open = true;
     own->next = all;
     all = own;
-    pthread_mutex_unlock(&mutex);
+    mf_process_unlock();
 done:
     if (status != STATUS_OK) {
         mf_manifest_clear(&own->list);
@@ -264,13 +263,13 @@ static bool seal(struct tracked_files *own) {
 }
 
 static void forget(struct tracked_files *own) {
-    pthread_mutex_lock(&mutex);
+    mf_process_lock();
     struct tracked_files **link = &all;
     while (*link && *link != own)
         link = &(*link)->next;
     if (*link)
         *link = own->next;
-    pthread_mutex_unlock(&mutex);
+    mf_process_unlock();
     close(own->list.place);
     mf_manifest_clear(&own->list);
     own->open = false;
@@ -378,10 +377,10 @@ static enum status claim(struct tracked_files *own, const char *name) {
 
 enum status mf_tracked_files_claim(const char *path) {
     const char *name;
-    pthread_mutex_lock(&mutex);
+    mf_process_lock();
     struct tracked_files *own = find(path, &name);
     const enum status status = own ? claim(own, name) : STATUS_OK;
-    pthread_mutex_unlock(&mutex);
+    mf_process_unlock();
     return status;
 }
 
@@ -389,7 +388,7 @@ void mf_tracked_files_remove(const char *path) {
     const char *name;
     if (!ranks_lead())
         return;
-    pthread_mutex_lock(&mutex);
+    mf_process_lock();
     struct tracked_files *own = find(path, &name);
     struct manifest_entry *entry = own ? mf_manifest_find(&own->list, name) : NULL;
     if (own == NULL)
@@ -397,7 +396,7 @@ void mf_tracked_files_remove(const char *path) {
     else if (entry && (entry->claimed ||
                        mf_tracked_file_state(own->list.place, name, entry) == TRACKED_FILE_AS_LEFT))
         entry->gone = mf_tracked_file_remove(own->list.place, name) == 0 || entry->gone;
-    pthread_mutex_unlock(&mutex);
+    mf_process_unlock();
 }
 
 /// @param[in] name  with / at its end
@@ -432,10 +431,10 @@ static enum status make_all(struct tracked_files *own, const char *name) {
 
 enum status mf_tracked_files_make_folder(const char *path, bool *done) {
     const char *name;
-    pthread_mutex_lock(&mutex);
+    mf_process_lock();
     struct tracked_files *own = find(path, &name);
     *done = own != NULL;
     const enum status status = own ? make_all(own, name) : STATUS_OK;
-    pthread_mutex_unlock(&mutex);
+    mf_process_unlock();
     return status;
 }

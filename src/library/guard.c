@@ -1,33 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "library/guard.h"
 
+#include "base/process_lock.h"
 #include "mesofit.h"
 
 #include <assert.h>
 #include <gsl/gsl_errno.h>
-#include <pthread.h>
+#include <locale.h>
 #include <string.h>
 
 static_assert((int)MESOFIT_BAD_INPUT == (int)STATUS_BAD_INPUT &&
                   (int)MESOFIT_INTERRUPTED == (int)STATUS_INTERRUPTED,
               "both enumerations are the same");
 
-static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+/// Of all threads, by the lock of the process.
 static unsigned inside;
 static gsl_error_handler_t *handler_outside;
 
+/// Of this thread, which may call from a function of the caller's that is called.
+static _Thread_local unsigned depth;
+static _Thread_local locale_t locale_outside;
+
 void mf_guard_enter(void) {
-    pthread_mutex_lock(&lock);
+    static locale_t plain; // lives as long as the process
+    mf_process_lock();
+    if (plain == (locale_t)0)
+        plain = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     if (inside++ == 0)
         handler_outside = gsl_set_error_handler_off();
-    pthread_mutex_unlock(&lock);
+    mf_process_unlock();
+    if (depth++ == 0)
+        locale_outside = uselocale(plain);
 }
 
 void mf_guard_leave(void) {
-    pthread_mutex_lock(&lock);
+    if (--depth == 0)
+        uselocale(locale_outside);
+    mf_process_lock();
     if (--inside == 0)
         gsl_set_error_handler(handler_outside);
-    pthread_mutex_unlock(&lock);
+    mf_process_unlock();
 }
 
 enum mesofit_status mf_guard_return(enum status status) {

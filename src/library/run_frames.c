@@ -11,11 +11,11 @@ static enum status read_frame(void *context, size_t number, struct trajectory_me
     const int answer = from->read(from->context, number, &given);
     if (answer < 0)
         return mf_status_fail(STATUS_INTERRUPTED, "%s: frame %zu could not be had", from->name,
-                              number);
+                              number + 1);
     *there = answer > 0;
     if (*there && given.positions == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu has no positions", from->name,
-                              number);
+                              number + 1);
     frame->time = given.time;
     memcpy(frame->box, given.box, sizeof given.box);
     frame->positions = given.positions;

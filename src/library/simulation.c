@@ -22,6 +22,7 @@ struct mesofit_simulation {
     struct simulation engine;
     struct user_force force;
     char *text; ///< of the scene, once it was asked for
+    atomic_bool stop;
 };
 
 /// Name of a text that is no file, in messages.
@@ -45,6 +46,7 @@ static enum status read_scene(struct scene *scene, const char *file) {
 }
 
 static enum status begin(struct mesofit_simulation *simulation) {
+    simulation->scene.setup.cancel = &simulation->stop;
     return mf_simulation_init(&simulation->engine, &simulation->scene.setup,
                               &simulation->scene.start);
 }
@@ -190,8 +192,18 @@ static enum status check_force(const struct mesofit_simulation *simulation) {
                           integrator->name);
 }
 
+void mesofit_simulation_stop(struct mesofit_simulation *simulation) {
+    atomic_store(&simulation->stop, true);
+}
+
+/// What was stopped before is no business of what begins.
+static enum status prepare(struct mesofit_simulation *simulation) {
+    atomic_store(&simulation->stop, false);
+    return check_force(simulation);
+}
+
 static enum status run(struct mesofit_simulation *simulation, uint64_t steps) {
-    TRY(check_force(simulation));
+    TRY(prepare(simulation));
     return mf_simulation_run(&simulation->engine, steps);
 }
 
@@ -244,9 +256,9 @@ static struct measure_plan plan_from_now(const struct mesofit_simulation *simula
                                  .every = (int64_t)every};
 }
 
-static enum status check_plan(const struct mesofit_simulation *simulation, size_t samples,
+static enum status check_plan(struct mesofit_simulation *simulation, size_t samples,
                               uint64_t every) {
-    TRY(check_force(simulation));
+    TRY(prepare(simulation));
     if (samples > 0 && every > 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "samples and the steps between them must be positive");

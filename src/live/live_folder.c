@@ -147,8 +147,14 @@ static enum status write_bytes(int file, const char *name, const char *bytes, si
                             : mf_status_fail(STATUS_IO, "%.200s: %s", name, strerror(errno));
 }
 
-/// A hard link fails if the name is taken, a rename replaces it.
+/// A hard link fails if the name is taken, a rename replaces it, though not what is no file: a link
+/// is somebody's way to another one.
 static enum status give_name(int folder, const char *partial, const char *name, bool replace) {
+    struct stat about;
+    if (replace && fstatat(folder, name, &about, AT_SYMLINK_NOFOLLOW) == 0 &&
+        !S_ISREG(about.st_mode))
+        return mf_status_fail(STATUS_BAD_INPUT, "%.200s is no plain file: it is not replaced",
+                              name);
     const int failed = replace ? renameat(folder, partial, folder, name)
                                : linkat(folder, partial, folder, name, 0);
     if (failed && errno == EEXIST)

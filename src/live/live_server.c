@@ -39,7 +39,12 @@ struct sending {
 };
 
 const char *mf_live_server_argument(const struct live_request *request, const char *name) {
-    return MHD_lookup_connection_value(request->connection, MHD_GET_ARGUMENT_KIND, name);
+    const char *value = NULL;
+    size_t size = 0;
+    const enum MHD_Result found = MHD_lookup_connection_value_n(
+        request->connection, MHD_GET_ARGUMENT_KIND, name, strlen(name), &value, &size);
+    // "t.json%00.txt" is no name of anything.
+    return found == MHD_YES && value && strlen(value) == size ? value : NULL;
 }
 
 static const char *find_head(struct MHD_Connection *connection, const char *name) {

@@ -11,6 +11,9 @@
 /// Width of the bins of g(r), and the part of the least height to which it goes, unless given [nm].
 static const double usual_width = 0.01, usual_part = 0.45;
 
+/// Of a box that is so large that there would be more, bins are wider.
+static const double most_bins = 100000;
+
 /// S(q) goes to twice the wave number 2π ρ^(1/3), near which a liquid has its peak, in so many bins
 /// of at most so many waves unless given: their cost grows with beads times waves.
 enum { WAVE_BINS = 100, USUAL_WAVES = 10 };
@@ -107,7 +110,7 @@ static enum status find_bins(struct measured *measured, const struct frame_box *
                               "is %g nm; choose --range and --bins accordingly",
                               first->file, first->number, plan->height);
     if (plan->bins == 0)
-        plan->bins = (int64_t)fmax(1, rint(plan->range / usual_width));
+        plan->bins = (int64_t)fmin(most_bins, fmax(1, rint(plan->range / usual_width)));
     measured->pairs.range = plan->range;
     measured->pairs.bins = (size_t)plan->bins;
     return STATUS_OK;
@@ -284,9 +287,10 @@ static enum status find_waves(const struct measured *measured, struct measured_s
         return STATUS_OK;
     const enum status status =
         mf_frame_waves_find(&slot->waves, &measured->waves, &slot->box, slot->place);
-    return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "%s: frame %zu: S(q)",
-                                                         slot->beads.file, slot->beads.number)
-                                      : status;
+    return status == STATUS_BAD_INPUT
+               ? mf_status_prefix(status, "%s: frame %zu: S(q), which --q-range 0 leaves out",
+                                  slot->beads.file, slot->beads.number)
+               : status;
 }
 
 static enum status look_at(void *context, size_t task, void *result) {

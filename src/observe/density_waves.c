@@ -141,6 +141,19 @@ static enum status reserve(struct density_waves *waves, const size_t *members) {
     return reserve_for_phases(waves);
 }
 
+/// The phases of a bead along an edge are in memory, however few waves are taken.
+static enum status check_edges(const struct density_waves *waves, const double length[3]) {
+    for (int i = 0; i < 3; i++) {
+        const double along = waves->plan.q_maximum * length[i] / (2 * pi);
+        if (along > DENSITY_WAVES_LONGEST)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "q_maximum %g has %.3g wave lengths along edge %d of the box; at "
+                                  "most %d are measured",
+                                  waves->plan.q_maximum, along, i + 1, DENSITY_WAVES_LONGEST);
+    }
+    return STATUS_OK;
+}
+
 /// The box's own n, and nothing of another box.
 static void begin_list(struct density_waves *waves, const double lattice[3][3],
                        const double length[3]) {
@@ -162,6 +175,7 @@ enum status mf_density_waves_list(struct density_waves *waves, const double latt
         return STATUS_OK;
     if (all > max_tested)
         return fail_of_many(waves, all);
+    TRY(check_edges(waves, length));
     TRY_ARRAY(seen, waves->plan.bins);
     TRY_ARRAY(members, waves->plan.bins);
     begin_list(waves, lattice, length);

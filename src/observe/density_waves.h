@@ -39,7 +39,8 @@ struct density_waves {
     double *amplitude;        ///< shape [vectors, types, 2]: ρ
 };
 
-enum { DENSITY_WAVES_MAX = 1000000 };
+/// Waves that are measured at most, and how many of their lengths an edge of the box may have.
+enum { DENSITY_WAVES_MAX = 1000000, DENSITY_WAVES_LONGEST = 10000 };
 
 /// Fails: NO_MEMORY. What has failed is cleared.
 enum status mf_density_waves_init(struct density_waves *waves,

@@ -3,12 +3,14 @@
 
 #include "base/memory.h"
 
+#include <locale.h>
 #include <pthread.h>
 
 enum turn { BODY, CALLER };
 
 struct coroutine {
     pthread_t thread;
+    locale_t locale; ///< of who began it
     pthread_mutex_t lock;
     pthread_cond_t changed; ///< the turn
     enum turn turn;
@@ -31,6 +33,7 @@ static void wait_for_turn(struct coroutine *coroutine, enum turn turn) {
 
 static void *run(void *memory) {
     struct coroutine *coroutine = memory;
+    uselocale(coroutine->locale);
     coroutine->body(coroutine, coroutine->context);
     pthread_mutex_lock(&coroutine->lock);
     coroutine->question = NULL;
@@ -47,6 +50,7 @@ struct coroutine *mf_coroutine_begin(void (*body)(struct coroutine *self, void *
     coroutine->body = body;
     coroutine->context = context;
     coroutine->turn = BODY;
+    coroutine->locale = uselocale((locale_t)0);
     pthread_mutex_init(&coroutine->lock, NULL);
     pthread_cond_init(&coroutine->changed, NULL);
     if (pthread_create(&coroutine->thread, NULL, run, coroutine) == 0)

@@ -85,6 +85,23 @@ static bool is_table(const char *path) {
     return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, R_OK) == 0;
 }
 
+/// Whether a table has more than its arguments, as that of a run that was stopped early need not.
+static bool has_values(const char *path) {
+    FILE *stream = fopen(path, "r");
+    char *line = NULL;
+    size_t size = 0;
+    bool found = false;
+    while (stream && !found && getline(&line, &size, stream) > 0) {
+        char *rest, *word = line[0] == '#' ? NULL : strtok_r(line, " \t\n", &rest);
+        while (word && !found && (word = strtok_r(NULL, " \t\n", &rest)))
+            found = strcmp(word, "nan") != 0;
+    }
+    free(line);
+    if (stream)
+        fclose(stream);
+    return found;
+}
+
 /// Whether all files of a list are there.
 static bool has_files(const char *folder, const char *const *files) {
     char path[PATH_SIZE];
@@ -185,7 +202,9 @@ static enum status draw_observable(const char *folder, const char *plots,
         return STATUS_OK;
     // What else it writes may be left out.
     const char *const first[] = {observable->files[0], NULL};
-    if (!has_files(folder, first))
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/%s", folder, *first);
+    if (!has_files(folder, first) || !has_values(path))
         return STATUS_OK;
     // It shows the box of the settings, which the folder of a state of a fit has not.
     static const char *const settings[] = {"used.json", NULL};

@@ -5,6 +5,7 @@
 // velocities, images, ids and the box's edges may change in time; masses and species are those of
 // the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
 #include "base/memory.h"
+#include "trajectory/h5md_canary.h"
 #include "trajectory/h5md_file.h"
 #include "trajectory/h5md_topology.h"
 #include "trajectory/trajectory.h"
@@ -23,15 +24,33 @@ static bool recognise(const unsigned char *begin, size_t size) {
     return size >= 8 && memcmp(begin, "\x89HDF\r\n\x1A\n", 8) == 0;
 }
 
-static enum status open(struct trajectory *trajectory) {
+struct state {
+    struct h5md_file h5md; ///< first: what most functions know
+    struct h5md_canary canary;
+};
+
+/// All that HDF5 is asked for by way of a trajectory, a step each: to open, every frame with, after
+/// the first, what the atoms are.
+static void go_ahead(void *context, int to);
+
+static enum status open_file(struct trajectory *trajectory) {
     struct h5md_file *const h5md = trajectory->state;
     TRY(mf_h5md_file_open(h5md, trajectory));
     trajectory->frames = h5md->position.frames;
     return STATUS_OK;
 }
 
+static enum status open(struct trajectory *trajectory) {
+    struct state *const state = trajectory->state;
+    TRY(mf_h5md_canary_begin(&state->canary, go_ahead, trajectory));
+    TRY(mf_h5md_canary_wait(&state->canary, 1, trajectory->file));
+    return open_file(trajectory);
+}
+
 static void close(struct trajectory *trajectory) {
-    mf_h5md_file_close(trajectory->state);
+    struct state *const state = trajectory->state;
+    mf_h5md_file_close(&state->h5md);
+    mf_h5md_canary_end(&state->canary);
 }
 
 // Fetching ----------------------------------------------------------------------------------------
@@ -81,14 +100,10 @@ static enum status read_box(struct h5md_file *h5md, double step, hsize_t at, dou
     return STATUS_OK;
 }
 
-static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
-                         bool *more) {
+static enum status fetch_numbers(struct trajectory *trajectory, struct trajectory_frame *frame) {
     struct h5md_file *const h5md = trajectory->state;
     const hsize_t at = trajectory->source.frame;
     struct header header = {0};
-    *more = at < h5md->position.frames;
-    if (!*more)
-        return STATUS_OK;
     TRY(mf_h5md_element_clock(&h5md->position, &h5md->position.step, at, &header.step));
     TRY(mf_h5md_element_clock(&h5md->position, &h5md->position.time, at, &header.time));
     TRY(read_box(h5md, header.step, at, header.box));
@@ -104,6 +119,17 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
         return fail_of_step(&h5md->id, header.step, at, "");
     memcpy(frame->raw.data, &header, sizeof header);
     return STATUS_OK;
+}
+
+static enum status fetch(struct trajectory *trajectory, struct trajectory_frame *frame,
+                         bool *more) {
+    struct state *const state = trajectory->state;
+    const size_t at = trajectory->source.frame;
+    *more = at < state->h5md.position.frames;
+    if (!*more)
+        return STATUS_OK;
+    TRY(mf_h5md_canary_wait(&state->canary, at + 2, trajectory->file));
+    return fetch_numbers(trajectory, frame);
 }
 
 static double peek(const struct trajectory_frame *frame) {
@@ -176,6 +202,21 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     if (status != STATUS_OK)
         return mf_status_prefix(status, "%s: frame 0", trajectory->file);
     return mf_h5md_topology_bonds(h5md, trajectory);
+}
+
+static void go_ahead(void *context, int to) {
+    struct trajectory *const trajectory = context;
+    struct trajectory_frame frame = {.file = trajectory->file};
+    enum status status = open_file(trajectory);
+    mf_h5md_canary_tell(to);
+    size_t *const at = &trajectory->source.frame;
+    for (; status == STATUS_OK && *at < trajectory->frames; ++*at) {
+        frame.raw.size = 0;
+        status = fetch_numbers(trajectory, &frame);
+        if (status == STATUS_OK && *at == 0)
+            status = describe(trajectory, &frame);
+        mf_h5md_canary_tell(to);
+    }
 }
 
 // Decoding ----------------------------------------------------------------------------------------
@@ -258,7 +299,7 @@ const struct trajectory_format mf_format_h5md = {
     .summary =
         "H5MD 1.1: positions, velocities, images, ids, box; masses, species, GROMACS's topology",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
-    .state_size = sizeof(struct h5md_file),
+    .state_size = sizeof(struct state),
     .recognise = recognise,
     .open = open,
     .close = close,

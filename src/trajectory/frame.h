@@ -12,7 +12,7 @@
 /// All zero is a frame that has not been read. Positions are as the file has them: whole molecules
 /// may reach out of the box, and atoms may be in any of its images.
 struct trajectory_frame {
-    size_t number;         ///< in the file, from 0
+    size_t number;         ///< in the file, from 0; of arrays of the caller's from 1
     int64_t step;          ///< of the simulation that wrote it; −1: not known
     double time;           ///< [ps]; NAN: not known
     bool has_box;          ///< else `box` is 0 and nothing is periodic

@@ -76,6 +76,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
         TRY(memory_files->read(memory_files->context, source->frame, &from, more));
     if (!*more)
         return STATUS_OK;
+    frame->number = source->frame + 1; // as atoms are counted
     memset(&header, 0, sizeof header); // a digest is taken of it, padding and all
     header.time = from.time * memory_files->time;
     header.has_velocities = from.velocities != NULL;

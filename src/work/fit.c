@@ -379,11 +379,10 @@ static enum status verify_and_write(struct run *run) {
     for (size_t s = 0; s < states; s++)
         CHECK(mf_fit_verify_write(&run->fit, s, &verification[s], &run->folder));
     CHECK(mf_history_close(&run->history, time_of(run).spent, &run->folder));
+    // Who is killed while they are drawn leaves a fit that is to be resumed, which clears up.
+    if (mf_run_folder_draw(&run->folder))
+        CHECK(mf_history_close(&run->history, time_of(run).spent, &run->folder));
     CHECK(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
-    // The fit is whole: what its figures took is not worth an error.
-    if (mf_run_folder_draw(&run->folder) &&
-        mf_history_close(&run->history, time_of(run).spent, &run->folder) != STATUS_OK)
-        mf_progress_print(&run->progress, "mesofit: warning: %s", mf_status_message());
     mf_fit_report_print(&run->progress, &run->fit, &run->unknowns, &result);
     mf_fit_print_warnings(&run->progress, &run->fit, verification);
     mf_fit_closing_print(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);

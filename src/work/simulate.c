@@ -12,6 +12,7 @@
 #include "work/simulate_changes.h"
 #include "work/simulate_observables.h"
 
+#include <math.h>
 #include <string.h>
 #include <sys/resource.h>
 
@@ -229,13 +230,12 @@ static void write_remarks(const struct run *run, struct json_writer *writer) {
         mf_json_write_text(writer, "many_body_warning", text);
 }
 
-static enum status write_summary(const struct run *run, double taken) {
+static enum status write_summary(const struct run *run, enum status how, double taken) {
     const struct observable_results results = results_of(run);
     struct json_writer *writer = mf_json_writer_create();
     char path[OUTPUT_PATH_SIZE];
     mf_units_write_summary(&run->scene.units, writer);
-    mf_json_write_text(writer, "status",
-                       mf_status_name(mf_simulate_observables_judge(&run->observables, &results)));
+    mf_json_write_text(writer, "status", mf_status_name(how));
     mf_json_write_text(writer, "method", "simulate");
     mf_json_write_number(writer, "seconds", taken);
     mf_json_write_number(writer, "engine_steps", (double)run->simulation.step);
@@ -326,30 +326,52 @@ static void remove_checkpoint(const struct run *run) {
 enum { MEMORY_SIZE = 64 };
 
 /// The most memory that the program has had at once, and of so many particles that it is theirs
-/// what each of them takes.
-static void describe_memory(const struct run *run, char line[MEMORY_SIZE]) {
+/// what each of them takes. @param[in] share  of the scene's particles, which were simulated
+static void describe_memory(const struct run *run, double share, char line[MEMORY_SIZE]) {
     static const double many = 1e5;
-    const double count = (double)run->simulation.particles.count;
+    const double count = (double)run->simulation.particles.count / share;
     struct rusage used;
     getrusage(RUSAGE_SELF, &used);
-    const double bytes = 1024.0 * (double)used.ru_maxrss;
-    const int length = snprintf(line, MEMORY_SIZE, "%.0f MB of memory", bytes / 1e6);
+    const double bytes = 1024.0 * (double)used.ru_maxrss / share;
+    const int length =
+        snprintf(line, MEMORY_SIZE, "%s%.0f MB of memory", share < 1 ? "about " : "", bytes / 1e6);
     if (count >= many)
         snprintf(line + length, (size_t)(MEMORY_SIZE - length), ", %.0f bytes a particle",
                  bytes / count);
 }
 
-static enum status write_results(struct run *run) {
-    const double taken = seconds(run);
+/// Tables, figures and the summary of what was sampled.
+static enum status write_results(struct run *run, enum status how, double taken) {
     const struct observable_results results = results_of(run);
     TRY(mf_simulate_observables_write(&run->observables, &results));
-    TRY(write_summary(run, taken));
-    remove_checkpoint(run);
+    // Who is killed while they are drawn leaves a run that is to be resumed, which clears up.
     mf_run_folder_draw(&run->folder);
+    return write_summary(run, how, taken);
+}
+
+/// A simulation that is stopped leaves what it has measured, as the live view shows it, and goes on
+/// from its checkpoint. One sample alone has no errors.
+static enum status write_interrupted(struct run *run) {
+    const struct simulation *simulation = &run->simulation;
+    const bool sampled = (int64_t)simulation->step >= run->plan.equilibration + 2 * run->plan.every;
+    TRY(save(run));
+    if (sampled)
+        TRY(write_results(run, STATUS_INTERRUPTED, seconds(run)));
+    return mf_status_fail(
+        STATUS_INTERRUPTED, "interrupted at step %llu%s%.300s; continue with --resume",
+        (unsigned long long)simulation->step, sampled ? "; what there is, is in " : "",
+        sampled ? run->folder.path : "");
+}
+
+static enum status write_finished(struct run *run) {
+    const struct observable_results results = results_of(run);
+    const double taken = seconds(run);
+    char memory[MEMORY_SIZE];
+    TRY(write_results(run, mf_simulate_observables_judge(&run->observables, &results), taken));
+    remove_checkpoint(run);
     mf_simulate_observables_print(&run->observables, &results, &run->progress);
     print_remarks(run);
-    char memory[MEMORY_SIZE];
-    describe_memory(run, memory);
+    describe_memory(run, 1, memory);
     mf_progress_print(&run->progress, "%llu steps in %.3g s, %s; results in %s",
                       (unsigned long long)run->simulation.step, taken, memory, run->folder.path);
     return mf_simulate_observables_judge(&run->observables, &results);
@@ -375,19 +397,33 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     CHECK(prepare(run, file, options));
     status = mf_units_add_to_message(&run->scene.units, carry_out(run));
-    if (status == STATUS_INTERRUPTED) {
-        CHECK(save(run));
-        status =
-            mf_status_fail(STATUS_INTERRUPTED, "interrupted at step %llu; continue with --resume",
-                           (unsigned long long)run->simulation.step);
-    }
+    if (status == STATUS_INTERRUPTED)
+        status = write_interrupted(run);
     if (status == STATUS_UNSTABLE) // it would be so again
         remove_checkpoint(run);
     if (status == STATUS_OK)
-        status = write_results(run);
+        status = write_finished(run);
 done:
     clear(run);
     return status;
+}
+
+/// Of many particles a part, at their density, tells what each takes, unless they are placed by
+/// hand or bound to each other. Returns which part it is.
+static double take_part(struct simulation_setup *setup) {
+    static const double enough = 2e5;
+    const double share = enough / (double)setup->placement.count;
+    if (share >= 1 || setup->placement.kind == PLACEMENT_FILE || setup->interactions > 0 ||
+        setup->integrator->solvent_particles)
+        return 1;
+    setup->placement.count = (int64_t)enough;
+    if (setup->composition.types > 0) {
+        setup->composition = mf_composition_scaled(&setup->composition, (int64_t)enough);
+        setup->placement.count = mf_composition_particles(&setup->composition);
+    }
+    for (int axis = 0; axis < setup->box.dimensions; axis++)
+        setup->box.length[axis] *= pow(share, 1.0 / setup->box.dimensions);
+    return share;
 }
 
 enum status mf_simulate_explain(const char *file, const struct run_options *options) {
@@ -396,12 +432,13 @@ enum status mf_simulate_explain(const char *file, const struct run_options *opti
     char memory[MEMORY_SIZE];
     NEW_ARRAY(run, 1);
     CHECK(read_file(run, file, options));
+    const struct simulation_setup whole = run->scene.setup;
+    const double share = take_part(&run->scene.setup);
     // All that a run refuses before its first step.
     CHECK(begin_measuring(run, file));
     mf_explain_scale(stdout, &run->scene.units);
-    mf_explain_scene(stdout, &run->scene.setup, &run->scene.units, run->observables.use,
-                     run->plan.every);
-    describe_memory(run, memory);
+    mf_explain_scene(stdout, &whole, &run->scene.units, run->observables.use, run->plan.every);
+    describe_memory(run, share, memory);
     printf("%s\n", memory);
 done:
     clear(run);

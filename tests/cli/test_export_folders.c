@@ -137,16 +137,21 @@ static void test_pairs_that_an_engine_would_take_for_one_are_refused(void **stat
 /// What LAMMPS cannot have between its quotes does not stand in its input.
 static void test_folders_may_have_quotes_in_their_names(void **state) {
     static struct run_program_result result;
-    static const char *const folders[] = {"it's", "q\"q", "d$x", "plain one"};
+    static const char *const folders[] = {"it's", "q\"q", "d$x", "\xc3\xbc", "plain one"};
+    char whole[1200];
     const bool runs = system("command -v lmp >/dev/null") == 0;
     small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
     small_scenes_simulate(&result, "out");
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 5; k++) {
         char path[64];
         run_export(&result, "lammps", folders[k]);
         snprintf(path, sizeof path, "%s/in.mesofit", folders[k]);
         char *input = temporary_folder_read(path);
-        assert_int_equal(strstr(input, "shell cd") != NULL, k == 3);
+        assert_int_equal(strstr(input, "shell cd") != NULL, k == 4);
+        assert_contains(input, "start LAMMPS in the folder of this input'\" \"quit 1\"");
+        snprintf(whole, sizeof whole, "shell cd \"%s/plain one\"",
+                 ((struct temporary_folder *)*state)->path);
+        assert_int_equal(strstr(input, whole) != NULL, k == 4);
         free(input);
         assert_int_equal(chdir(folders[k]), 0);
         if (runs)

@@ -47,6 +47,28 @@ static void test_a_run_that_is_stopped_is_saved(void **state) {
     }
 }
 
+/// All that it has measured so far, as at its end, and no number of which nothing is known yet: the
+/// MSD begins after 10000 samples.
+static void test_a_simulation_that_is_stopped_shows_what_it_has(void **state) {
+    small_inputs_write(*state, "scene.json", small_inputs_scene, "\"samples\": 4, \"every\": 1}",
+                       "\"samples\": 100000000, \"every\": 1}, \"motion\": {\"lags\": 10000}");
+    const struct run_program_how how = {.interrupt_after = 0.2, .interrupt_with = SIGINT};
+    run_program(&result, &how, (const char *const[]){"simulate", "scene.json", NULL});
+    run_program_assert_code(&result, INTERRUPTED);
+    assert_contains(result.err, "; what there is, is in out; continue with --resume");
+    assert_null(strstr(result.err, "nan"));
+    assert_null(strstr(result.err, "no figure"));
+    results_assert_text("out/summary.json", "status", "interrupted");
+    results_assert_table("out/rdf.tsv", 0, 0);
+    results_assert_table("out/thermodynamics.tsv", 0, 0);
+    const double steps = results_number("out/summary.json", "engine_steps");
+    assert_true(steps >= 4 && steps < 10000);
+    run_program(&result, &how, (const char *const[]){"simulate", "scene.json", "--resume", NULL});
+    run_program_assert_code(&result, INTERRUPTED);
+    assert_true(results_number("out/summary.json", "engine_steps") > steps);
+    run_program_assert_no_partial("out");
+}
+
 static int shell(const char *line) {
     const int status = system(line);
     assert_true(WIFEXITED(status));
@@ -129,6 +151,7 @@ static void test_closed_streams_change_no_file(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_run_that_is_stopped_is_saved),
+        TEST_WITH_SHELL(test_a_simulation_that_is_stopped_shows_what_it_has),
         TEST_WITH_SHELL(test_a_run_whose_pipe_is_closed_is_saved),
         TEST_WITH_SHELL(test_a_hangup_that_is_ignored_stays_ignored),
         TEST_WITH_SHELL(test_a_simulation_is_saved_before_its_first_step),

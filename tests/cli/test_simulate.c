@@ -85,6 +85,26 @@ static void test_simulate_says_what_memory_many_particles_take(void **state) {
     assert_close_relative(1e6 * megabytes, 1e5 * bytes, 0.02);
 }
 
+/// Who asks what a run would cost has not the memory for it: 10^7 particles of the same liquid.
+static void test_explain_of_many_particles_takes_no_gigabytes(void **state) {
+    double megabytes, bytes;
+    small_inputs_write(*state, "scene.json",
+                       "{\"box\": [228.36, 228.36, 228.36], \"particles\": {\"count\": 10000000}, "
+                       "\"temperature\": 0.7, \"time_step\": 0.005, "
+                       "\"conservative\": {\"law\": \"lennard-jones\", \"cutoff\": 2.5}}",
+                       NULL, NULL);
+    assert_int_equal(system("ulimit -v 1000000; \"$MESOFIT\" simulate scene.json --explain > out"),
+                     0);
+    char *const text = temporary_folder_read("out"), *const line = strstr(text, "\nabout ");
+    assert_contains(text, "10000000 particles");
+    assert_non_null(line);
+    assert_int_equal(
+        sscanf(line, " about %lf MB of memory, %lf bytes a particle", &megabytes, &bytes), 2);
+    assert_true(megabytes > 2000 && megabytes < 7000);
+    assert_close_relative(1e6 * megabytes, 1e7 * bytes, 0.02);
+    free(text);
+}
+
 static void test_simulate_takes_a_dissipative_law_for_each_pair_type(void **state) {
     static struct run_program_result result;
     small_scenes_write(*state, small_scenes_mixture, NULL, NULL);
@@ -423,6 +443,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
         TEST_WITHOUT_FIGURES(test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture),
         TEST_WITHOUT_FIGURES(test_simulate_says_what_memory_many_particles_take),
+        TEST_WITHOUT_FIGURES(test_explain_of_many_particles_takes_no_gigabytes),
         TEST_WITHOUT_FIGURES(test_simulate_takes_a_dissipative_law_for_each_pair_type),
         TEST(test_figure_of_a_long_run_is_no_larger_when_gnuplot_is_there),
         TEST(test_simulate_draws_all_g_of_a_mixture_when_gnuplot_is_there),

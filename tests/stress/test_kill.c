@@ -88,6 +88,14 @@ static void assert_same(const struct kind *kind, const char *out, int code, int 
     run_program_assert_no_partial(out);
 }
 
+/// What says that it is finished will not be resumed: nothing half done may be left beside it.
+static void assert_whole_if_finished(const char *out) {
+    char path[64];
+    snprintf(path, sizeof path, "%s/summary.json", out);
+    if (temporary_folder_exists(path))
+        run_program_assert_no_partial(out);
+}
+
 /// Kill before (sign 1) or after (−1) each step; returns how many there are.
 static int check_steps(const struct kind *kind, int sign, int expected) {
     for (int at = 1;; at++) {
@@ -100,6 +108,7 @@ static int check_steps(const struct kind *kind, int sign, int expected) {
             assert_same(kind, out, result.code, expected);
             return at - 1;
         }
+        assert_whole_if_finished(out);
         // What is finished needs no more; what is not, goes on.
         assert_same(kind, out, finish(kind, out), expected);
     }
@@ -135,6 +144,7 @@ static void test_a_run_killed_at_random_goes_on_with_the_same_bits(void **state)
                 &result, &how,
                 (const char *const[]){kinds[k].verb, "run.json", "-o", out, "--quiet", NULL});
             killed += result.code == -SIGKILL;
+            assert_whole_if_finished(out);
             const int code = result.code == -SIGKILL ? finish(&kinds[k], out) : result.code;
             assert_same(&kinds[k], out, code, expected);
         }

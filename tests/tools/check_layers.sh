@@ -55,8 +55,9 @@ faults=$(
     only_in src/optimise/nlopt_driver.c 'include.*nlopt\.h' 'NLopt'
     only_in src/report/figure_script.c '"([^" ]*/)?gnuplot[" ]' 'gnuplot'
     only_in 'src/\(bench/bench_lammps\|export/export_lammps\).c' '"([^" ]*/)?lmp[" ]' 'LAMMPS'
-    only_in src/report/program.c '\b(fork|vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
+    only_in src/report/program.c '\b(vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
+    only_in 'src/\(report/program\|trajectory/h5md_canary\).c' '\bfork ?\(' 'starting a process'
     only_in src/base/clock.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
         'waiting until a time, by a clock that is never set back,'
     only_in 'src/\(io/manifest\|io/partial_file\|io/tracked_files*\|io/output\|report/figure_script\|live/live_folder\|report/film\|bench/bench_lammps\).c' \

@@ -221,10 +221,10 @@ static void test_faults_of_frames_are_told(void **state) {
     struct mesofit_run *const run = mesofit_run_create();
     gas.position[3][17][1] = NAN;
     assert_int_equal(MEASURE(run, &inputs, "<gas>", out), MESOFIT_BAD_INPUT);
-    assert_contains(mesofit_message(), "<gas>: frame 3: the position of atom 18 is not finite");
+    assert_contains(mesofit_message(), "<gas>: frame 4: the position of atom 18 is not finite");
     gas.fail_at = 2;
     assert_int_equal(MEASURE(run, &inputs, "<gas>", out), MESOFIT_INTERRUPTED);
-    assert_contains(mesofit_message(), "frame 2 could not be had");
+    assert_contains(mesofit_message(), "frame 3 could not be had");
     trajectory.length = 0;
     assert_int_equal(MEASURE(run, &inputs, "<gas>", out), MESOFIT_BAD_INPUT);
     assert_contains(mesofit_message(), "units of length");

@@ -71,8 +71,12 @@ static void test_links_are_not_followed(void **state) {
     assert_int_equal(mf_live_folder_read(root, "up/secret.json", &size), -1);
     assert_int_equal(mf_live_folder_enter(root, "up"), -1);
     assert_int_not_equal(mf_live_folder_write(root, "up/new.json", "x", 1, true), STATUS_OK);
-    // A link in the place of a file is replaced, and what it pointed to stays.
-    assert_ok(mf_live_folder_write(root, "link.json", "[]", 2, true));
+    // Nor is one replaced: it is somebody's way to what it points to, which stays.
+    assert_fails(mf_live_folder_write(root, "link.json", "[]", 2, true), STATUS_BAD_INPUT,
+                 "link.json is no plain file");
+    struct stat about;
+    assert_int_equal(fstatat(root, "link.json", &about, AT_SYMLINK_NOFOLLOW), 0);
+    assert_true(S_ISLNK(about.st_mode));
     char *secret = temporary_folder_read(temporary_folder_file(folder, "secret.json"));
     assert_string_equal(secret, "{}");
     free(secret);

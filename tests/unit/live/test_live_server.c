@@ -166,6 +166,8 @@ static void test_paths_and_methods_that_are_not_there_are_refused(void **state) 
     assert_int_equal(ask("GET /api/file?path=../../etc/passwd", GOOD, ""), 404);
     assert_int_equal(ask("GET /api/file?path=%2e%2e%2fsecret", GOOD, ""), 404);
     assert_int_equal(ask("GET /api/file?path=/etc/passwd", GOOD, ""), 404);
+    assert_int_equal(ask("POST /api/file?path=cut.json%00.txt", GOOD, "x"), 400);
+    assert_int_equal(ask("GET /api/file?path=cut.json", GOOD, ""), 404);
     assert_int_equal(ask("GET /api/files?in=elsewhere", GOOD, ""), 404);
     assert_int_equal(ask("GET /etc/passwd", HOST, ""), 403);
     assert_int_equal(ask("GET /../etc/passwd", GOOD, ""), 404);

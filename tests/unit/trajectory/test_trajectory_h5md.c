@@ -500,6 +500,40 @@ static void test_h5md_is_refused_when_it_is_cut_or_damaged(void **state) {
     close_all();
 }
 
+/// The numbers of a compact dataset stand in its header, behind their size in bytes, which is set
+/// to 0: HDF5 1.10 would read them from nowhere.
+static void test_h5md_is_refused_when_less_is_stored_than_its_size(void **state) {
+    static const int id[ATOMS] = {1, 2, 3};
+    static const hsize_t size[] = {ATOMS};
+    static const char layout[] = {3, H5D_COMPACT, sizeof id, 0};
+    char bytes[65536];
+    begin_file(state);
+    const hid_t group = begin_group("all"), space = H5Screate_simple(1, size, NULL),
+                how = H5Pcreate(H5P_DATASET_CREATE);
+    write_positions(group, H5T_IEEE_F64LE, true, "nm");
+    H5Pset_layout(how, H5D_COMPACT);
+    const hid_t ids = H5Dcreate(group, "id", H5T_NATIVE_INT, space, H5P_DEFAULT, how, H5P_DEFAULT);
+    H5Dwrite(ids, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, id);
+    H5Dclose(ids);
+    H5Pclose(how);
+    H5Sclose(space);
+    H5Gclose(group);
+    end_file();
+    assert_ok(try(&nothing));
+    close_all();
+    FILE *stream = fopen(path, "r+b");
+    const size_t whole = fread(bytes, 1, sizeof bytes, stream);
+    size_t at = 0;
+    while (at < whole && memcmp(bytes + at, layout, sizeof layout) != 0)
+        at++;
+    assert_in_range(at, 1, whole - sizeof layout);
+    fseek(stream, (long)at + 2, SEEK_SET);
+    fputc(0, stream);
+    fclose(stream);
+    assert_fails(try(&nothing), STATUS_BAD_INPUT,
+                 "a.h5: HDF5 crashes where it reads it: it is damaged");
+}
+
 static void link_elsewhere(hid_t place, const char *name, const char *to) {
     assert_true(H5Lcreate_external("other.h5", to, place, name, H5P_DEFAULT, H5P_DEFAULT) >= 0);
 }
@@ -627,6 +661,7 @@ int main(void) {
         TEST(test_h5md_is_refused_when_its_box_or_steps_do_not_fit),
         TEST(test_h5md_is_refused_when_it_promises_more_than_it_holds),
         TEST(test_h5md_is_refused_when_it_is_cut_or_damaged),
+        TEST(test_h5md_is_refused_when_less_is_stored_than_its_size),
         TEST(test_h5md_is_refused_when_links_lead_into_other_files),
         TEST(test_h5md_is_refused_when_its_numbers_are_elsewhere),
         TEST(test_h5md_is_told_apart_when_it_is_other_hdf5),
