@@ -312,6 +312,30 @@ static void assert_constrained_minimum(const struct imc_system *system, double s
         }
 }
 
+/// A potential whose last bin jumps to 0 at the cutoff is made to end there by a step that the data
+/// do not ask for, and that changes little else. Steps that know nothing of it keep the jump.
+static void test_imc_solve_makes_up_for_a_jump_at_the_cutoff(void **state) {
+    (void)state;
+    double covariance[SIZE][SIZE] = {{0}}, excess[SIZE] = {0}, variance[SIZE], phi[SIZE], x[SIZE];
+    struct imc_solution solution;
+    for (int a = 0; a < SIZE; a++)
+        covariance[a][a] = temperature;
+    fill(variance, 0.03);
+    fill(phi, 0);
+    phi[SIZE - 1] = 0.3;
+    struct imc_system system = make_system(covariance, excess, variance);
+    assert_ok(mf_imc_solve(&system, 1, x, &solution));
+    for (int a = 0; a < SIZE; a++)
+        assert_close(x[a], 0, 1e-12);
+    system.phi = phi;
+    assert_ok(mf_imc_solve(&system, 1, x, &solution));
+    print_message("%.4f and %.4f at the end\n", phi[SIZE - 2] + x[SIZE - 2],
+                  phi[SIZE - 1] + x[SIZE - 1]);
+    assert_true(fabs(phi[SIZE - 1] + x[SIZE - 1]) < 0.2 * phi[SIZE - 1]);
+    assert_true(fabs(x[SIZE - 2]) < 0.3 * phi[SIZE - 1]);
+    assert_true(fabs(x[SIZE / 2]) < 0.01);
+}
+
 static void test_imc_solve_meets_a_constraint_at_the_least_cost(void **state) {
     (void)state;
     double covariance[SIZE][SIZE], excess[SIZE], variance[SIZE], x[SIZE], p[SIZE];
@@ -409,6 +433,7 @@ int main(void) {
         cmocka_unit_test(test_imc_solve_stays_bounded_when_a_bin_has_no_pairs),
         cmocka_unit_test(test_imc_solve_stays_bounded_when_the_excess_cannot_be_removed),
         cmocka_unit_test(test_imc_solve_leaves_the_ramp_free_when_it_is_smooth),
+        cmocka_unit_test(test_imc_solve_makes_up_for_a_jump_at_the_cutoff),
         cmocka_unit_test(test_imc_solve_meets_a_constraint_at_the_least_cost),
         cmocka_unit_test(
             test_imc_solve_follows_all_directions_when_it_is_weak_and_none_when_strong),
