@@ -7,6 +7,9 @@
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
+#include "base/rng.h"
+
+#include <gsl/gsl_vector.h>
 #include <math.h>
 
 enum { BINS = 8, CORE = 2, KNOWN = BINS - CORE, STATES = 2, UNSEEN = 3 };
@@ -111,9 +114,81 @@ static void test_equations_of_states_have_the_same_least_squares(void **state) {
         mf_potential_grid_clear(&made.state[s].grid);
 }
 
+/// Normal numbers of the excess: the samples' part by the correlations of C, n of n + N of them,
+/// and that of the target in each bin by itself.
+static void draw_excess(const struct made *made, const double *target_variance, uint32_t trial,
+                        double *excess) {
+    const double *c = made->covariance[0];
+    const double part =
+        made->state[0].response.independent / (made->state[0].response.independent + (double)KNOWN);
+    double factor[KNOWN][KNOWN] = {{0}}, normal[KNOWN][4];
+    for (size_t a = 0; a < KNOWN; a++)
+        mf_rng_normal4(mf_rng_philox(7, RNG_INITIAL, trial, (uint32_t)a, 0), normal[a]);
+    for (size_t a = 0; a < KNOWN; a++) { // Cholesky's factor of the correlations
+        excess[a] = sqrt(target_variance[a]) * normal[a][1];
+        for (size_t b = 0; b <= a; b++) {
+            double left = (a == b ? 1 : part) * c[a * KNOWN + b] /
+                          sqrt(c[a * (KNOWN + 1)] * c[b * (KNOWN + 1)]);
+            for (size_t k = 0; k < b; k++)
+                left -= factor[a][k] * factor[b][k];
+            factor[a][b] = a == b ? sqrt(left) : left / factor[b][b];
+            excess[a] +=
+                sqrt(made->variance[0][a] - target_variance[a]) * factor[a][b] * normal[b][0];
+        }
+    }
+}
+
+/// What Bᵀ L⁻¹ excess scatters by, of an excess whose errors of the target are each bin's own,
+/// though the rows take them for those of samples.
+static void test_equations_scatter_by_errors_of_each_bin(void **state) {
+    (void)state;
+    enum { TRIALS = 20000 };
+    static struct made made;
+    static const double tolerance = 0.05; // 5 sqrt(2/20000), of the diagonal
+    struct inversion_equations equations = {0};
+    double excess[KNOWN], target_variance[KNOWN], product[KNOWN][KNOWN] = {{0}};
+    gsl_matrix *response = gsl_matrix_alloc(KNOWN, KNOWN);
+    gsl_vector *whitened = gsl_vector_alloc(KNOWN);
+    make(&made);
+    made.state[0].response.independent = 50;
+    made.problem[0].targets.target[TARGET_PRESSURE].count = 0;
+    for (size_t a = 0; a < KNOWN; a++) {
+        target_variance[a] = 0.7 * made.variance[0][a];
+        made.exact[a + CORE] = sqrt(target_variance[a]);
+    }
+    made.state[0].replicas.counts.mean = made.g;
+    made.state[0].target.counts = made.g;
+    assert_ok(mf_inversion_equations_init(&equations, made.state, 1));
+    assert_ok(mf_inversion_equations_fill(&equations, 1));
+    for (uint32_t trial = 0; trial < TRIALS; trial++) {
+        double asked[KNOWN] = {0};
+        draw_excess(&made, target_variance, trial, excess);
+        struct imc_system system = equations.system;
+        system.excess = excess;
+        mf_imc_solve_rows(&system, response, whitened);
+        for (size_t b = 0; b < KNOWN; b++)
+            for (size_t a = 0; a < KNOWN; a++)
+                asked[b] += gsl_matrix_get(response, a, b) * gsl_vector_get(whitened, a);
+        for (size_t a = 0; a < KNOWN; a++)
+            for (size_t b = 0; b <= a; b++)
+                product[a][b] += asked[a] * asked[b] / TRIALS;
+    }
+    for (size_t a = 0; a < KNOWN; a++)
+        for (size_t b = 0; b <= a; b++)
+            assert_close(product[a][b], equations.scatter[a * KNOWN + b],
+                         tolerance * sqrt(equations.scatter[a * (KNOWN + 1)] *
+                                          equations.scatter[b * (KNOWN + 1)]));
+    gsl_matrix_free(response);
+    gsl_vector_free(whitened);
+    mf_inversion_equations_clear(&equations);
+    for (size_t s = 0; s < STATES; s++)
+        mf_potential_grid_clear(&made.state[s].grid);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_equations_of_states_have_the_same_least_squares),
+        cmocka_unit_test(test_equations_scatter_by_errors_of_each_bin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
