@@ -2,12 +2,36 @@
 #include "inversion/inversion_noise.h"
 
 #include "inversion/inversion_state.h"
+#include "problem/group_kind.h"
 
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
 
-/// What has the correlations of C: the samples' part, or the target's, too.
+/// The target of a block of the grid.
+static const struct target *target_of(const struct inversion_state *state, size_t block) {
+    const struct potential_grid *grid = &state->grid;
+    const int kind =
+        block < grid->pairs
+            ? TARGET_RDF
+            : mf_group_kind_target(grid->group[block - grid->pairs].own.unknown->order);
+    return &state->problem->targets.target[kind];
+}
+
+/// The variances that have the correlations of C: those of the samples, and of the target if its
+/// errors are of samples.
+static void fill_variances(const struct inversion_state *state, enum inversion_noise_kind kind,
+                           double *v) {
+    const struct potential_grid *grid = &state->grid;
+    for (size_t block = 0, a = 0; block < grid->blocks; block++) {
+        const bool own = kind == INVERSION_NOISE_OF_BINS || target_of(state, block)->own_errors;
+        for (const size_t end = a + grid->known_of[block]; a < end; a++)
+            v[a * grid->known + a] =
+                fmax(0, state->variance[a] - (own ? mf_inversion_target_variance(state, a) : 0));
+    }
+}
+
+/// What has the correlations of C.
 static void fill_samples(const struct inversion_state *state, enum inversion_noise_kind kind,
                          double *v) {
     const size_t known = state->grid.known;
@@ -15,10 +39,7 @@ static void fill_samples(const struct inversion_state *state, enum inversion_noi
     const double *c = state->response.covariance;
     const double independent = state->response.independent;
     const double counts = independent / (independent + (double)state->response.functions);
-    for (size_t a = 0; a < known; a++)
-        v[a * known + a] = fmax(
-            0, state->variance[a] -
-                   (kind == INVERSION_NOISE_OF_BINS ? mf_inversion_target_variance(state, a) : 0));
+    fill_variances(state, kind, v);
     for (size_t a = 0; a < known; a++)
         for (size_t b = 0; b < a; b++) {
             const double own = c[a * known + a] * c[b * known + b];

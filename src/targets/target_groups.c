@@ -166,11 +166,20 @@ static void write(const struct target_files *files, int kind, struct json_writer
     }
 }
 
+/// Whether a file of a group has no errors.
+static bool has_own_errors(const struct target_groups *groups) {
+    bool own = false;
+    for (size_t g = 0; g < groups->groups; g++)
+        own = own || groups->member[g].estimated_error > 0;
+    return own;
+}
+
 static struct target values(const struct target_files *files, int kind) {
     const struct target_groups *groups = files->own[kind];
     return (struct target){.count = groups->first[groups->groups],
                            .value = groups->value,
                            .error = groups->error,
+                           .own_errors = has_own_errors(groups),
                            .block = groups->block,
                            .blocks = groups->blocks};
 }

@@ -224,11 +224,21 @@ static void write(const struct target_files *files, int kind, struct json_writer
     }
 }
 
+/// Whether a file of a pair type has no errors.
+static bool has_own_errors(const struct target_pairs *target) {
+    bool own = false;
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        own = own || target->member[pair].estimated_error > 0 ||
+              target->member[pair].resampling.error > 0;
+    return own;
+}
+
 static struct target values(const struct target_files *files, int kind) {
     const struct target_pairs *target = files->own[kind];
     return (struct target){.count = target_pairs_values(target),
                            .value = target->g,
                            .error = target->error,
+                           .own_errors = has_own_errors(target),
                            .factor_error = target->factor_error};
 }
 

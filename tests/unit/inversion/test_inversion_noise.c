@@ -26,6 +26,7 @@ static void make(struct made *made) {
                  .known_bin = made->known_bin,
                  .known_of = made->known_of,
                  .blocks = 2,
+                 .pairs = 2,
                  .seen = made->seen},
         .response = {.covariance = made->covariance, .independent = SAMPLES, .functions = KNOWN},
         .replicas.counts = {.size = KNOWN, .mean = made->counts},
@@ -93,6 +94,10 @@ static void test_inversion_noise_of_a_target_of_samples_correlates_as_theirs(voi
     assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, 3, 3), 4, 1e-12);
     assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, 3, 2), 0.94 * 4 * 0.5, 1e-12);
     assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, UNSEEN, 4), 0, 1e-12);
+    // Errors that no file gives are those of a scatter that sees each bin by itself.
+    made.problem.targets.target[TARGET_RDF].own_errors = true;
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, 3, 3), 4, 1e-12);
+    assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, 3, 2), 0.94 * 0.5, 1e-12);
 }
 
 int main(void) {
