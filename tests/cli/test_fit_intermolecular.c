@@ -41,7 +41,7 @@ static const char twin[] =
 #define COMPARED                                                                                   \
     "\"intermolecular_rdf\": {\"file\": \"twin/intermolecular_rdf.tsv\", \"fitted\": \"no\"}"
 #define METHOD                                                                                     \
-    "\"name\": \"gauss-newton\", \"iterations\": 8, \"equilibration\": 300, \"samples\": 60,\n"    \
+    "\"name\": \"gauss-newton\", \"iterations\": 12, \"equilibration\": 300, \"samples\": 60,\n"    \
     "  \"every\": 25, \"temperature_tolerance\": 0.5"
 #define UNKNOWN                                                                                    \
     "\"unknowns\": {\"numbers\": {\"conservative.a\": {\"minimum\": 5, \"maximum\": 60}}}"
@@ -116,7 +116,7 @@ static void test_fit_of_structure_between_molecules_has_the_same_bits_again(void
     static const char *const pieces[] = {"fit", "run.json", "-o", "pieces", "--threads", "2", NULL};
     simulate(*state, NULL, NULL);
     write_fit(*state, (const char *const[]){
-                          "\"iterations\": 8, \"equilibration\": 300, \"samples\": 60",
+                          "\"iterations\": 12, \"equilibration\": 300, \"samples\": 60",
                           "\"iterations\": 2, \"equilibration\": 100, \"samples\": 15", NULL});
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--threads", "1");
     const int code = result.code;
