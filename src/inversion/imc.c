@@ -12,18 +12,14 @@ static const char *const columns[] = {INVERSION_COLUMNS, "regularisation[1]", "m
                                       "directions", NULL};
 
 /// C is known well enough if a Newton step leaves at most this share of the excess by the noise of
-/// C: sqrt(directions/n) of a step in so many directions that are sampled, by n independent
-/// samples.
+/// C: sqrt(directions/n) of a step in so many directions, by n independent samples.
 static const double well_known = 1.0 / 3;
 
 bool mf_imc_is_known(const struct inversion *inversion, double directions) {
-    bool known = true;
-    for (size_t s = 0; s < inversion->states; s++) {
-        const struct inversion_response *response = &inversion->state[s].response;
-        known = known && fmin(directions, (double)response->functions) <
-                             well_known * well_known * response->independent;
-    }
-    return mf_inversion_is_near(inversion) || known;
+    double independent = INFINITY;
+    for (size_t s = 0; s < inversion->states; s++)
+        independent = fmin(independent, inversion->state[s].response.independent);
+    return mf_inversion_is_near(inversion) || directions < well_known * well_known * independent;
 }
 
 /// The strength of the regularisation: 0, by the noise (mf_imc_solve), or that of the band's prior,

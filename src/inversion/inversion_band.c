@@ -212,7 +212,7 @@ static void add_walk(struct inversion *inversion, double *scratch) {
 }
 
 /// A pressure with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) + σ_P² k kᵀ with
-/// k = u/(p·u + σ_P²).
+/// k = u/(p·u).
 static void add_pressure(struct inversion *inversion, double *scratch) {
     const double *slope = inversion->state->pressure.slope;
     const size_t n = inversion_grid(inversion)->known;
@@ -222,7 +222,7 @@ static void add_pressure(struct inversion *inversion, double *scratch) {
     const double noise = inversion->assessment.distance[TARGET_PRESSURE].noise;
     const double along = multiply(inversion->course.band.inverse, n, slope, scratch);
     for (size_t a = 0; a < n; a++)
-        scratch[a] /= along + noise * noise;
+        scratch[a] /= along;
     take_off(inversion->course.band.covariance, n, scratch, slope);
     add_square(inversion, noise * noise, scratch);
 }

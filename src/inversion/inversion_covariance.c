@@ -54,7 +54,8 @@ static enum status workspace_init(struct workspace *w, const double *sampled, co
     for (size_t a = 0; a < bins; a++)
         for (size_t b = 0; b < bins; b++) {
             const double unit = gsl_vector_get(w->unit, a) * gsl_vector_get(w->unit, b);
-            gsl_matrix_set(w->c, a, b, unit > 0 ? sampled[a * bins + b] / unit : 0);
+            // An empty bin is as single pairs have it, and asks for no functions.
+            gsl_matrix_set(w->c, a, b, unit > 0 ? sampled[a * bins + b] / unit : a == b);
         }
 done:
     return status;
@@ -145,13 +146,13 @@ static enum status choose_functions(struct workspace *w, size_t block, size_t fi
     for (double spacing = 1; bins > 0; spacing *= coarser) {
         const size_t count = (size_t)ceil((double)bins / spacing);
         double found;
-        if (count < MIN_FUNCTIONS && isfinite(best))
+        if (count < MIN_FUNCTIONS && w->count[block] > 0)
             break;
         gsl_matrix_free(q);
         q = gsl_matrix_alloc(bins, count);
         CHECK(q ? STATUS_OK : STATUS_NO_MEMORY);
         CHECK(try_functions(w, first, bins, q, &found));
-        if (!(found < best))
+        if (!(found < best) && w->count[block] > 0)
             continue;
         best = found;
         w->count[block] = count;

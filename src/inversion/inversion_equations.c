@@ -93,11 +93,12 @@ static void fill_row(struct filling *to, const double *slope, double missing, do
 }
 
 /// The rows of g(r) and of groups, in the bins that the state has seen; the others stay 0.
-static enum status fill_bins(const struct inversion_state *state, struct filling *to) {
+static enum status fill_bins(const struct inversion_state *state, enum inversion_noise_kind kind,
+                             struct filling *to) {
     struct imc_system own = mf_inversion_equations_of(state);
     if (to->response_variance)
         TRY(mf_imc_response_variance(state, to->response_variance));
-    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, to->response_variance, to->noise);
+    mf_inversion_noise_find(state, kind, to->response_variance, to->noise);
     own.noise = to->noise;
     mf_imc_solve_rows(&own, to->response, to->excess);
     for (size_t a = 0; a < own.size; a++, to->row++) {
@@ -173,7 +174,7 @@ static enum status reduce(const struct inversion_equations *equations, double bi
     CHECK(all.rows && all.rhs && all.response && all.excess && reflect ? STATUS_OK
                                                                        : STATUS_NO_MEMORY);
     for (size_t s = 0; s < equations->states; s++) {
-        CHECK(fill_bins(&equations->state[s], &all));
+        CHECK(fill_bins(&equations->state[s], equations->kind[s], &all));
         fill_others(&equations->state[s], &all);
     }
     gsl_linalg_QR_decomp(all.rows, reflect);
@@ -189,14 +190,15 @@ done:
 }
 
 /// Add what a state's rows scatter by: TᵀV T with T = W⁻¹C/k_B T.
-static enum status add_scatter(const struct inversion_state *state, double *scatter) {
+static enum status add_scatter(const struct inversion_state *state, enum inversion_noise_kind kind,
+                               double *scatter) {
     enum status status = STATUS_OK;
     const size_t known = state->grid.known;
     struct imc_system own = mf_inversion_equations_of(state);
     gsl_matrix *t = gsl_matrix_alloc(known, known), *factor = gsl_matrix_alloc(known, known);
     gsl_matrix_view to = gsl_matrix_view_array(scatter, known, known);
     CHECK(t && factor ? STATUS_OK : STATUS_NO_MEMORY);
-    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, NULL, factor->data);
+    mf_inversion_noise_find(state, kind, NULL, factor->data);
     own.noise = factor->data;
     mf_imc_solve_rows(&own, t, NULL);
     gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, factor, t);
@@ -229,7 +231,7 @@ static enum status fill_scatter(const struct inversion_equations *equations, dou
         const struct targets *targets = &state->problem->targets;
         const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
         const struct target *integrals = &targets->target[mf_kirkwood_buff_kind()];
-        TRY(add_scatter(state, equations->scatter));
+        TRY(add_scatter(state, equations->kind[s], equations->scatter));
         if (equations->reduced && targets_ask(targets, TARGET_PRESSURE))
             add_scatter_of_number(state, state->pressure.slope, state->assessment.pressure_reach,
                                   birge, equations->scatter);
@@ -245,6 +247,8 @@ static enum status fill_scatter(const struct inversion_equations *equations, dou
 enum status mf_inversion_equations_fill(struct inversion_equations *equations, double birge) {
     const struct inversion_state *state = equations->state;
     double *variance = equations->response_variance;
+    for (size_t s = 0; s < equations->states; s++)
+        TRY(mf_inversion_noise_choose(&equations->state[s], &equations->kind[s]));
     TRY(fill_scatter(equations, birge));
     if (equations->reduced) {
         TRY(reduce(equations, birge, NULL, &equations->rows, &equations->system));
@@ -252,13 +256,12 @@ enum status mf_inversion_equations_fill(struct inversion_equations *equations, d
                                  &equations->of_response)
                         : STATUS_OK;
     }
-    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, NULL, equations->noise);
+    mf_inversion_noise_find(state, equations->kind[0], NULL, equations->noise);
     equations->system.noise = equations->noise;
     if (variance == NULL)
         return STATUS_OK;
     TRY(mf_imc_response_variance(state, variance));
-    mf_inversion_noise_find(state, INVERSION_NOISE_OF_SAMPLES, variance,
-                            equations->noise_of_response);
+    mf_inversion_noise_find(state, equations->kind[0], variance, equations->noise_of_response);
     equations->of_response.noise = equations->noise_of_response;
     return STATUS_OK;
 }

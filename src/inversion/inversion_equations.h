@@ -12,6 +12,8 @@
 #pragma once
 
 #include "inversion/imc_solve.h"
+#include "inversion/inversion_noise.h"
+#include "problem/inverse.h"
 
 struct inversion_state;
 
@@ -27,6 +29,7 @@ struct inversion_equations {
     struct imc_system system;      ///< with the noise of the excess
     struct imc_system of_response; ///< of fits with groups: with that of the response, too
     struct inversion_rows rows, rows_of_response;
+    enum inversion_noise_kind kind[INVERSE_MAX_STATES]; ///< of the excess of each state
     double *scatter; ///< what Bᵀ L⁻¹ excess of `system` scatters by, if the errors of
                      ///< targets are each bin's own, shape [known, known]
     double *noise;   ///< of mf_inversion_noise_find, shape [known, known]

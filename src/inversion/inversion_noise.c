@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion_noise.h"
 
+#include "inversion/inversion_equations.h"
 #include "inversion/inversion_state.h"
 #include "problem/group_kind.h"
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
@@ -88,4 +90,71 @@ void mf_inversion_noise_find(const struct inversion_state *state, enum inversion
         take_diagonal(state, more, factor);
     for (size_t a = 0; a < known; a++)
         memset(factor + a * known + a + 1, 0, (known - a - 1) * sizeof *factor);
+}
+
+/// C P⁻¹ C: what the prior of steps allows of the excess; k_B T cancels.
+static enum status fill_allowed(const struct inversion_state *state, gsl_matrix *allowed) {
+    enum status status = STATUS_OK;
+    const size_t known = state->grid.known;
+    const struct imc_system system = mf_inversion_equations_of(state);
+    const gsl_matrix_const_view response =
+        gsl_matrix_const_view_array(system.covariance, known, known);
+    gsl_matrix *rows = gsl_matrix_alloc(2 * known - 1, known);
+    gsl_matrix *half = gsl_matrix_alloc(known, known), *prior = gsl_matrix_alloc(known, known);
+    CHECK(rows && half && prior ? STATUS_OK : STATUS_NO_MEMORY);
+    mf_imc_solve_prior(&system, rows);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, rows, 0, prior);
+    gsl_linalg_cholesky_decomp1(prior);
+    gsl_matrix_transpose_memcpy(half, &response.matrix);
+    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, prior, half);
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, half, 0, allowed);
+done:
+    gsl_matrix_free(rows);
+    gsl_matrix_free(half);
+    gsl_matrix_free(prior);
+    return status;
+}
+
+/// −2 ln of the likelihood of the excess, but for a constant; infinite where rounding leaves no
+/// factor.
+static enum status measure(const struct inversion_state *state, const gsl_matrix *allowed,
+                           enum inversion_noise_kind kind, double *unlikely) {
+    enum status status = STATUS_OK;
+    const size_t known = state->grid.known;
+    gsl_matrix *noise = gsl_matrix_alloc(known, known), *all = gsl_matrix_alloc(known, known);
+    gsl_vector *excess = gsl_vector_alloc(known);
+    CHECK(noise && all && excess ? STATUS_OK : STATUS_NO_MEMORY);
+    mf_inversion_noise_find(state, kind, NULL, noise->data);
+    gsl_matrix_memcpy(all, allowed);
+    gsl_blas_dsyrk(CblasLower, CblasNoTrans, 1, noise, 1, all);
+    *unlikely = INFINITY;
+    if (gsl_linalg_cholesky_decomp1(all) != GSL_SUCCESS)
+        goto done;
+    for (size_t a = 0; a < known; a++)
+        gsl_vector_set(excess, a, state->grid.seen[a] ? state->excess[a] : 0);
+    gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, all, excess);
+    *unlikely = pow(gsl_blas_dnrm2(excess), 2);
+    for (size_t a = 0; a < known; a++)
+        *unlikely += 2 * log(gsl_matrix_get(all, a, a));
+done:
+    gsl_matrix_free(noise);
+    gsl_matrix_free(all);
+    gsl_vector_free(excess);
+    return status;
+}
+
+enum status mf_inversion_noise_choose(const struct inversion_state *state,
+                                      enum inversion_noise_kind *kind) {
+    enum status status = STATUS_OK;
+    double samples, bins;
+    gsl_matrix *allowed = gsl_matrix_alloc(state->grid.known, state->grid.known);
+    CHECK(allowed ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK(fill_allowed(state, allowed));
+    CHECK(measure(state, allowed, INVERSION_NOISE_OF_SAMPLES, &samples));
+    CHECK(measure(state, allowed, INVERSION_NOISE_OF_BINS, &bins));
+    *kind = samples <= bins ? INVERSION_NOISE_OF_SAMPLES : INVERSION_NOISE_OF_BINS;
+        fprintf(stderr, "DBG samples %.1f bins %.1f\n", samples, bins);
+done:
+    gsl_matrix_free(allowed);
+    return status;
 }
