@@ -11,7 +11,7 @@ table = "./" . all[strlen("./population_") + 1:strlen(all)]
 columns = int(system("awk -F '\t' '/^# *r/ { print NF; exit }'" . from(all)))
 nm = factor_of(table, "r[nm]", 1)
 kJ = factor_of(table, "phi[kJ/mol]", 2)
-phi_axis = in_units(table, "phi[kJ/mol]", "{/:Italic Φ}({/:Italic r}) / (kJ/mol)", phi_label)
+phi_axis = in_units(table, "phi[kJ/mol]", phi_name . " / (kJ/mol)", phi_label)
 
 # The candidates may go a little beyond the result.
 stats table using 1 name "R" nooutput
