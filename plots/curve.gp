@@ -32,6 +32,7 @@ do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
     set xrange [low(0, X_min):end_of(X_max)]
     set yrange [begin:H_max + margin]
+    if (part ne "") { set tmargin at screen 0.92 }
     eval part_title(0.96)
     set xlabel header(1)
     if (y == 4) { set ylabel figure noenhanced } else { set ylabel header(2) }

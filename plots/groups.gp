@@ -18,8 +18,10 @@ stats table using 1 name "X" nooutput
 highest = 0
 lowest = 0
 do for [k = 1:words(drawn)] {
-    stats table using int(word(drawn, k)) name "Y" nooutput
-    highest = high(highest, Y_max)
+    n = int(word(drawn, k))
+    stats table using n name "Y" nooutput
+    stats table using (column(n) + 1.96 * known(n + 1)) name "B" nooutput
+    highest = high(highest, B_max)
     lowest = low(lowest, Y_min)
 }
 # In the colours of rdf.gp.

@@ -30,7 +30,8 @@ do for [kind in kinds] {
     eval open(kind, figure, 720, 480)
     set lmargin at screen 0.13
     set rmargin at screen 0.97
-    set tmargin at screen 0.97
+    set tmargin at screen part eq "" ? 0.97 : 0.91
+    eval part_title(0.955)
     set bmargin at screen 0.14
     set xrange [nm * begin:above(nm * begin, nm * R_max)]
     set yrange [kJ * bottom:kJ * top]
