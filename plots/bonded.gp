@@ -9,7 +9,7 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/iterations.gp"
 
 symbol = symbol_of(first_of(table))
-U = (first_of(table) eq "rho" ? "{/:Italic f}(" : "{/:Italic U}(") . symbol . ")"
+U = (first_of(table) eq "rho" ? "{/:Italic f}" : "{/:Italic U}") . index_of_part . "(" . symbol . ")"
 kJ = factor_of(table, "energy[kJ/mol]", 2)
 energy_axis = in_units(table, "energy[kJ/mol]", U . " / (kJ/mol)", U . " / {/:Italic k}_B{/:Italic T}")
 
@@ -41,7 +41,8 @@ do for [kind in kinds] {
     set xlabel per_unit(symbol, table, 1)
     eval name_axis(energy_axis, 0.024)
     set key at screen 0.97, screen 0.97 right top vertical maxrows 1
-    if (columns > 1) { eval iteration_bar(0, 1.085) }
+    eval part_title(0.955)
+    if (columns > 1) { eval iteration_bar(part eq "" ? 0 : 0.25, 1.085) }
     plot for [k = oldest:columns:every] history \
             using 1:(kJ * column(k)):(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
         @show_band table using 1:(is_shown(3) ? kJ * $2 : NaN) with lines title "result" \

@@ -9,7 +9,7 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 y = column_of(table, "result") > 0 ? 4 : 2
 # Symbols as the other figures have them, for what heads of columns call by plain letters.
 names = "of[\"r\"] = \"{/:Italic r}\"; of[\"q\"] = \"{/:Italic q}\"; of[\"time\"] = \"{/:Italic t}\"; " . \
-    "of[\"g\"] = \"{/:Italic g}({/:Italic r})\"; of[\"S\"] = \"{/:Italic S}({/:Italic q})\"; " . \
+    "of[\"g\"] = \"" . g_label . "\"; of[\"S\"] = \"{/:Italic S}({/:Italic q})\"; " . \
     "of[\"msd\"] = \"MSD\"; of[\"vacf\"] = \"VACF\"; "
 # The name of column n and its unit, "q / lambda^{-1}" for "q[1/lambda]", "S" for "S[1]".
 header(n) = system(sprintf("awk -F '\t' 'BEGIN { " . names . "} /^#/ { sub(/^# */, \"\"); h = $%d; ", n) . \
@@ -24,14 +24,19 @@ stats table using 1 name "X" nooutput
 stats table using (low(column(2), column(y) - 1.96 * known(y + 1))) name "L" nooutput
 stats table using (high(column(2), column(y) + 1.96 * known(y + 1))) name "H" nooutput
 margin = H_max > L_min ? 0.05 * (H_max - L_min) : 0.5
+# What is never below 0 begins there, unless it is all far above.
+stats table using (y == 4 ? low(column(2), column(4)) : $2) name "V" nooutput
+begin = V_min >= 0 && V_min < H_max / 4 ? 0 : L_min - margin
 
 do for [kind in kinds] {
     eval open(kind, figure, 720, 440)
     set xrange [low(0, X_min):end_of(X_max)]
-    set yrange [L_min - margin:H_max + margin]
+    set yrange [begin:H_max + margin]
+    if (part ne "") { set tmargin at screen 0.92 }
+    eval part_title(0.96)
     set xlabel header(1)
     if (y == 4) { set ylabel figure noenhanced } else { set ylabel header(2) }
-    if (y == 4) { set key right top vertical } else { unset key }
+    if (y == 4) { set key tmargin right horizontal } else { unset key }
     plot table using 1:(band_low(y, y + 1)):(band_high(y, y + 1)) \
             with filledcurves @band linecolor rgb blue, \
         "" using 1:y with lines title (y == 4 ? "result" : "") linewidth 2.2 linecolor rgb blue, \

@@ -24,11 +24,11 @@ dots = E_records > 50 ? 0 : 0.5
 do for [kind in kinds] {
     eval open(kind, "error", 860, 420)
     set multiplot
-    set tmargin at screen 0.9
+    set tmargin at screen 0.87
     set bmargin at screen 0.165
     eval log_range("y", L_min, E_max)
     set format y "%h"
-    set key on at screen 0.975, screen 0.985 right top vertical maxrows 1 noautotitle
+    set key on at screen 0.13, screen 0.995 left top vertical Left reverse noautotitle
 
     set lmargin at screen 0.135
     set rmargin at screen 0.55
@@ -36,9 +36,9 @@ do for [kind in kinds] {
     set xtics step_of(N_max / 3)
     set xlabel "simulations"
     eval name_axis(error_label, 0.018)
-    plot history using 2:5 with lines title "statistical noise" \
+    plot history using 2:5 with lines title "what noise alone would make of it" \
             linewidth 1.4 dashtype 2 linecolor rgb faint, \
-        "" using 2:4 with linespoints title "error" \
+        "" using 2:4 with linespoints title "error: distance from the targets" \
             linewidth 2.2 pointtype 7 pointsize dots linecolor rgb blue
 
     set lmargin at screen 0.585

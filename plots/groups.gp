@@ -18,8 +18,10 @@ stats table using 1 name "X" nooutput
 highest = 0
 lowest = 0
 do for [k = 1:words(drawn)] {
-    stats table using int(word(drawn, k)) name "Y" nooutput
-    highest = high(highest, Y_max)
+    n = int(word(drawn, k))
+    stats table using n name "Y" nooutput
+    stats table using (column(n) + 1.96 * known(n + 1)) name "B" nooutput
+    highest = high(highest, B_max)
     lowest = low(lowest, Y_min)
 }
 # In the colours of rdf.gp.
@@ -32,7 +34,8 @@ do for [kind in kinds] {
     set xrange [begin:above(begin, X_max)]
     set yrange [1.04 * lowest:end_of(highest)]
     set xlabel first eq "sweeps" ? first : per_unit(symbol, table, 1)
-    set ylabel figure eq "molecule_motion" ? per_unit("⟨|Δ{/:Bold R}({/:Italic t})|^2⟩", table, 2) : of_time ? "⟨{/:Bold R}({/:Italic t})·{/:Bold R}(0)⟩ / ⟨{/:Italic R}²⟩" : per_unit("{/:Italic p}(" . symbol . ")", table, 2)
+    set ylabel of_time ? per_unit("⟨|Δ{/:Bold R}({/:Italic t})|^2⟩", table, 2) : per_unit("{/:Italic p}" . index_of_part . "(" . symbol . ")", table, 2)
+    eval part_title(0.96)
     set key tmargin right horizontal
     plot for [k = 1:words(drawn)] table using 1:(band_low(int(word(drawn, k)), int(word(drawn, k)) + 1)):(band_high(int(word(drawn, k)), int(word(drawn, k)) + 1)) \
             with filledcurves @band linecolor rgb colour_of(k - 1), \

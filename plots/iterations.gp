@@ -20,6 +20,9 @@ every = high(1, ceil((columns - 1) / real(most_lines)))
 iteration_of(column) = first + (last - first) * (column - 2.0) / high(1, columns - 2)
 oldest = 2 + (columns - 2) % every
 
+# Without a history there is no bar.
+unset colorbox
+
 # Commands for the colours of iterations and the bar that explains them, whose left lower corner is at
 # x, y of the panel.
 iteration_bar(x, y) = "set palette defined (0 '#d9e0e6', 1 '#41749c'); set cbrange [first:last]; " . \

@@ -11,7 +11,7 @@ table = "./" . all[strlen("./population_") + 1:strlen(all)]
 columns = int(system("awk -F '\t' '/^# *r/ { print NF; exit }'" . from(all)))
 nm = factor_of(table, "r[nm]", 1)
 kJ = factor_of(table, "phi[kJ/mol]", 2)
-phi_axis = in_units(table, "phi[kJ/mol]", "{/:Italic Φ}({/:Italic r}) / (kJ/mol)", phi_label)
+phi_axis = in_units(table, "phi[kJ/mol]", phi_name . " / (kJ/mol)", phi_label)
 
 # The candidates may go a little beyond the result.
 stats table using 1 name "R" nooutput
@@ -30,7 +30,8 @@ do for [kind in kinds] {
     eval open(kind, figure, 720, 480)
     set lmargin at screen 0.13
     set rmargin at screen 0.97
-    set tmargin at screen 0.97
+    set tmargin at screen part eq "" ? 0.97 : 0.91
+    eval part_title(0.955)
     set bmargin at screen 0.14
     set xrange [nm * begin:above(nm * begin, nm * R_max)]
     set yrange [kJ * bottom:kJ * top]

@@ -23,6 +23,7 @@ do for [kind in kinds] {
 
     set tmargin at screen 0.925
     set bmargin at screen 0.40
+    eval part_title(0.96)
     set yrange [0:G_max > 0 ? 1.08 * G_max : 1]
     set ytics autofreq
     set format x ""
@@ -32,6 +33,7 @@ do for [kind in kinds] {
         table using ($1 * nm):4 with lines title "result" linewidth 2.6 linecolor rgb blue, \
         table using ($1 * nm):2 with points title target pointtype 7 pointsize 0.38 linecolor rgb ink
 
+    unset label 3
     set tmargin at screen 0.34
     set bmargin at screen 0.125
     set yrange [-limit:limit]

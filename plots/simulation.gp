@@ -13,10 +13,13 @@ rdfs = system("ls | grep -E '^rdf(_[A-Za-z0-9_]+-[A-Za-z0-9_]+)?[.]tsv$'")
 with_rdf = words(rdfs) > 0
 nm = with_rdf ? factor_of(word(rdfs, 1), "r[nm]", 1) : 1
 g_top = 0
+g_far = 0
 do for [file in rdfs] {
     stats file using (nm * $1) name "R" nooutput
     stats file using ($2 + known(3)) name "G" nooutput
     g_top = high(g_top, G_max)
+    stats file using (nm * $1 > 0.5 * R_max ? $2 + known(3) : NaN) name "F" nooutput
+    g_far = high(g_far, F_max)
 }
 # The pair type that a table is of: nothing, or A-B.
 pair_of(file) = strlen(file) > 7 ? file[5:strlen(file) - 4] : ""
@@ -38,7 +41,7 @@ if (total > 0) { stats "thermodynamics.tsv" using total name "V" nooutput }
 largest = high(high(abs(L_min), abs(H_max)), high(high(abs(U_min), abs(U_max)), high(abs(P_min), abs(P_max))))
 left = (with_rdf ? 0.61 : 0.16) + (largest < 1e5 ? 0 : 0.05)
 label = with_rdf ? 0.512 : 0.03
-# The legend of a mixture stands above the curves.
+# The legend of a mixture stands above the curves of the right half.
 rows = words(rdfs) < 2 ? 0 : words(rdfs) < 6 ? words(rdfs) : 6
 step_of_panels = panels == 4 ? 0.2066 : 0.275
 ceiling(panel) = 0.93 - step_of_panels * panel
@@ -60,7 +63,7 @@ do for [kind in kinds] {
         set xrange [0:above(0, R_max)]
         set xtics autofreq
         set ytics autofreq
-        set yrange [0:(g_top > 0 ? 1.08 * g_top : 1) / (1 - 0.075 * rows)]
+        set yrange [0:g_top > 0 ? 1.08 * high(g_top, g_far / (1 - 0.075 * rows)) : 1]
         set format x "%h"
         set xlabel r_axis_of(word(rdfs, 1))
         eval name_axis(g_label, 0.014)

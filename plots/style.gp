@@ -45,9 +45,17 @@ set grid xtics ytics linetype 1 linewidth 0.5 linecolor rgb "#e4e4e4"
 set key noautotitle noenhanced samplen 2.2 spacing 1.25 textcolor rgb ink
 set style fill solid noborder
 
+# The pair of types, or the group, of which a figure is one of several, as "A-B" of "rdf_A-B": symbols
+# have it as an index, with a blank for _, and the figure as its title, by eval part_title(height of its
+# middle). Nothing where there is one alone.
+part = system("printf %s \"$MESOFIT_FIGURE\" | sed -nE 's/^((intermolecular_)?rdf|potential|population|bond_lengths|bond_angles|dihedral_angles|bonds|angles|dihedrals|many_body)_([A-Za-z0-9_-]+)$/\\3/p'")
+index_of_part = part eq "" ? "" : "_{" . system("printf %s '" . part . "' | tr _ ' '") . "}"
+part_title(y) = part eq "" ? "" : sprintf("set label 3 part at graph 0, screen %g left noenhanced font ',16'", y)
+
 r_label   = "{/:Italic r} / {/:Italic λ}"
-g_label   = "{/:Italic g}({/:Italic r})"
-phi_label = "{/:Italic Φ}({/:Italic r}) / {/:Italic k}_B{/:Italic T}"
+g_label   = "{/:Italic g}" . index_of_part . "({/:Italic r})"
+phi_name  = "{/:Italic Φ}" . index_of_part . "({/:Italic r})"
+phi_label = phi_name . " / {/:Italic k}_B{/:Italic T}"
 omega_label = "{/:Italic ω}({/:Italic r}) / ({/:Italic μ}/{/:Italic τ})^{1/2}"
 t_label   = "{/:Italic t} / {/:Italic τ}"
 E_label   = "{/:Italic E}({/:Italic t}, {/:Italic r}_0)"
@@ -180,7 +188,9 @@ log_tics(axis, a, b) = sprintf("set %stics (%s%g)", axis, \
     decades(power(a), b, log10(b / a) > 2.2), 10**ceil(log10(b)))
 log_axis(axis, a, b) = sprintf("set logscale %s; set %srange [%g:%g]; ", axis, axis, a, b) . \
     log_tics(axis, a, b)
-log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4, b * 1.4)
+# Where none of these is near, the end itself is labelled.
+log_range(axis, a, b) = a > b ? log_axis(axis, 0.1, 1) : log_axis(axis, a / 1.4, b * 1.4) . \
+    (step_of(1.4 * b) < a / 1.4 ? sprintf("; set %stics (%g)", axis, a) : "")
 
 # k_B T_0 in the units of column 2 of a potential's table, by the temperature at the top of used.json.
 energy_of(file) = real(system("awk -F '\t' '/^#/ && NF > 1 && !k { k = $2 ~ /kcal/ ? 0.0019872 : $2 ~ /kJ/ ? 0.0083145 : 0 } \

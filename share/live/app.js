@@ -15,7 +15,7 @@ const at = (id) => document.getElementById(id);
 const candidate = new Candidate(at("panels"));
 const panels = [new Curves(at("panels")), candidate, new Population(at("panels")), new Maps(at("panels"))];
 const tables = new Tables();
-const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames"), colours: at("colour") });
+const particles = new Particles(at("particles"), { scene: at("scene"), frames: at("frames"), colours: at("colour"), types: at("types") });
 const film = new Film(at("particles"), at("record"), () => (state.file.split("/").pop() || "mesofit").replace(/\.json$/, ""));
 const settings = new Settings(at("settings"));
 const files = new Files(at("files"), { fail: showMessage, settings: () => settings.text,

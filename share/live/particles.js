@@ -2,8 +2,10 @@
 // The particles as points of WebGL, turned by mouse, touch and keys.
 import { ask } from "/server.js";
 
-const head = 64, mostTypes = 8;
-const colours = [[0.35, 0.62, 1], [1, 0.45, 0.4], [0.4, 0.85, 0.55], [0.95, 0.8, 0.3], [0.75, 0.55, 0.95], [0.35, 0.85, 0.9], [0.95, 0.6, 0.3], [0.7, 0.75, 0.8]];
+const head = 64, mostTypes = 8, nameSize = 16;
+// Those of figures, by types (plots/style.gp).
+const typeColours = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9", "#882255", "#7a7a1f"];
+const colours = typeColours.map((hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255));
 
 const vertexProgram = `
 attribute vec3 place; attribute float shade;
@@ -60,14 +62,17 @@ function parse(buffer) {
   const types = Array.from(new Uint32Array(buffer, head, mostTypes));
   let at = head + 4 * mostTypes;
   const take = (numbers) => { const list = new Float32Array(buffer, at, numbers); at += 4 * numbers; return list; };
-  return { count, dimensions: view.getUint32(8, little), types, step: view.getFloat64(24, little), time: view.getFloat64(32, little),
+  const frame = { count, dimensions: view.getUint32(8, little), types, step: view.getFloat64(24, little), time: view.getFloat64(32, little),
     box: [40, 44, 48].map((k) => view.getFloat32(k, little)), places: take(3 * count), speeds: take(count),
     polarities: parts & 1 ? take(2 * count) : null, energies: parts & 2 ? take(count) : null, hasPotential: (parts & 4) !== 0 };
+  const text = new TextDecoder();
+  frame.names = types.map((_, k) => text.decode(new Uint8Array(buffer, at + nameSize * k, nameSize)).replace(/\0.*/s, ""));
+  return frame;
 }
 
 export class Particles {
-  constructor(canvas, { scene, frames, colours }) {
-    Object.assign(this, { canvas, scene, frames, colours, range: "", turn: [1, 0, 0, 0, 1, 0, 0, 0, 1], scale: 1, serial: 0, frame: null, drawn: 0, since: 0, wanted: false });
+  constructor(canvas, { scene, frames, colours, types }) {
+    Object.assign(this, { canvas, scene, frames, colours, types, hidden: new Set(), range: "", turn: [1, 0, 0, 0, 1, 0, 0, 0, 1], scale: 1, serial: 0, frame: null, drawn: 0, since: 0, wanted: false });
     this.choice = { colour: "type", slice: 1, sliceAt: 0.5, bead: 1 };
     // Beads are cut out of squares, whose edges are all that smoothing by the browser would see, at four times the work.
     this.gl = canvas.getContext("webgl", { antialias: false, alpha: false });
@@ -120,7 +125,27 @@ export class Particles {
     this.frame = frame;
     this.shades = null;
     this.offer();
+    this.offerTypes();
     this.show();
+  }
+
+  // The legend: types in their colours, each of which can be left out.
+  offerTypes() {
+    const { names, types } = this.frame, known = names.filter((name, k) => name && types[k]);
+    if (this.types.dataset.names === known.join(" "))
+      return;
+    this.types.dataset.names = known.join(" ");
+    this.hidden.clear();
+    this.types.replaceChildren(...names.map((name, k) => {
+      const label = document.createElement("label"), box = document.createElement("input"), bead = document.createElement("span");
+      Object.assign(box, { type: "checkbox", checked: true });
+      bead.className = "bead";
+      bead.style.background = typeColours[k];
+      box.addEventListener("change", () => { this.hidden[box.checked ? "delete" : "add"](k); this.show(); });
+      label.append(box, bead, name);
+      label.hidden = !name || !types[k];
+      return label;
+    }));
   }
 
   leave() {
@@ -195,7 +220,12 @@ export class Particles {
     for (const [name, value] of Object.entries({ scale: (frame.dimensions === 2 ? 1.7 : 1.25) * this.scale, aspect: width / height, bead: this.findBead(), coloured: this.coloured,
       slice: this.choice.slice >= 1 ? 2 : this.choice.slice, sliceAt: this.choice.sliceAt, height }))
       gl.uniform1f(this.uniform(name), value);
-    gl.drawArrays(gl.POINTS, 0, frame.count);
+    let first = 0; // ids of a type follow each other
+    frame.types.forEach((number, type) => {
+      if (number > 0 && !this.hidden.has(type))
+        gl.drawArrays(gl.POINTS, first, number);
+      first += number;
+    });
     this.countFrame();
   }
 

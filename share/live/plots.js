@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Panels with plots of Chart.js.
-const palette = ["#2f6fd0", "#d1495b", "#2a9d6f", "#b5830a", "#8a5cc2", "#148f9e", "#c2571a", "#6b7785"];
+// Panels with plots of Chart.js, in the colours of figures (plots/style.gp) and, at last, the grey of what is
+// compared with.
+const palette = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9", "#882255", "#6b7785"];
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const all = new Set();
 
@@ -40,6 +41,13 @@ export function band(x, y, error, k) {
   const width = error.map((e) => (Number.isFinite(e) ? 1.96 * e : 0));
   return [{ ...edge, data: points(x, y.map((v, n) => v - width[n])) },
     { ...edge, data: points(x, y.map((v, n) => v + width[n])), fill: "-1" }];
+}
+
+// 0, where no curve goes below it and they are not all far above: bands alone may end below.
+function fromZero(datasets) {
+  const values = datasets.filter((set) => set.label).flatMap((set) => set.data.map((p) => p.y));
+  const low = Math.min(...values), high = Math.max(...values);
+  return values.length && low >= 0 && low < high / 4 ? 0 : undefined;
 }
 
 export class Plot {
@@ -90,11 +98,10 @@ export class Plot {
       scales.y.title.text = y;
     // What comes later lies above what came before, which Chart.js does the other way round.
     this.chart.data.datasets = datasets.map((set, k) => ({ ...set, order: datasets.length - k }));
-    if (this.range) {
-      const [low, high] = this.range(datasets);
-      scales.y.min = low;
-      scales.y.max = high;
-    }
+    if (this.range)
+      [scales.y.min, scales.y.max] = this.range(datasets);
+    else if (scales.y.type === "linear")
+      scales.y.min = fromZero(datasets);
     this.chart.options.plugins.legend.display = datasets.filter((set) => set.label).length > 0;
     this.chart.update("none");
   }

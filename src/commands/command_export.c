@@ -15,13 +15,15 @@ static const struct command_option options[] = {
     {NULL, NULL, NULL},
 };
 
-/// On a terminal alone: in a pipe the lines of the result say how long it was.
+/// Who waits is told first what for: files alone would be there at once.
 static void report(void *context, const struct simulation *simulation, uint64_t done,
                    uint64_t total) {
     struct progress *const progress = context;
-    (void)simulation;
-    if (!progress->terminal && !progress->watcher)
-        return;
+    if (progress->pace.period == 0)
+        mf_progress_print(progress,
+                          "simulating %llu steps of %zu beads, to tell what D is with the "
+                          "friction that runs there",
+                          (unsigned long long)total, simulation->particles.count);
     mf_progress_report(progress, done, total, "steps", "with both frictions");
     if (done == total)
         mf_progress_print(progress, "%llu steps with both frictions in %.3g s",

@@ -27,11 +27,14 @@ static unsigned find_parts(const struct simulation *simulation, bool energies) {
            (potential && energies && listed ? LIVE_PARTICLES_ENERGY : 0);
 }
 
+enum { NAMES_SIZE = COMPOSITION_MAX_TYPES * COMPOSITION_NAME_SIZE };
+_Static_assert(COMPOSITION_NAME_SIZE == 16, "the page reads 16 bytes a name");
+
 static size_t find_size(const struct particles *particles, unsigned parts) {
     const size_t numbers =
         4 + (parts & LIVE_PARTICLES_POLARITY ? 2 : 0) + (parts & LIVE_PARTICLES_ENERGY ? 1 : 0);
     return LIVE_PARTICLES_HEAD + COMPOSITION_MAX_TYPES * sizeof(uint32_t) +
-           particles->count * numbers * sizeof(float);
+           particles->count * numbers * sizeof(float) + NAMES_SIZE;
 }
 
 static bool reserve(struct live_bytes *bytes, size_t size) {
@@ -103,6 +106,13 @@ static void write_polarities(const struct particles *particles, float *to) {
             to[2 * (size_t)particles->id[k] + (size_t)d] = (float)orientation.polarity[d][k];
 }
 
+static void write_names(const struct composition *composition, unsigned char *to) {
+    memset(to, 0, NAMES_SIZE);
+    for (int type = 0; type < composition->types; type++)
+        memcpy(to + (ptrdiff_t)type * COMPOSITION_NAME_SIZE, composition->name[type],
+               strlen(composition->name[type]));
+}
+
 void mf_live_particles_write(const struct simulation *simulation, bool energies,
                              struct live_bytes *bytes) {
     const struct particles *particles = &simulation->particles;
@@ -121,4 +131,5 @@ void mf_live_particles_write(const struct simulation *simulation, bool energies,
     if (parts & LIVE_PARTICLES_ENERGY)
         mf_reference_energies(simulation->setup.potential, &simulation->setup.composition,
                               particles, &simulation->neighbours, to);
+    write_names(&simulation->setup.composition, bytes->bytes + bytes->size - NAMES_SIZE);
 }

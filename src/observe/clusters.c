@@ -1,32 +1,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Clusters: particles nearer than a distance to one of them belong to it, by the forest of R. E.
-// Tarjan, J. ACM 22, 215 (1975). Told are the share of particles in clusters of each size, its mean
-// ⟨Σ s²⟩/N, and the share in the largest. Tested: test_clusters.
+// Tarjan, J. ACM 22, 215 (1975). Of some types alone, as the tails of a surfactant, the others are
+// as if they were not there. Told are the share of particles in clusters of each size, its mean ⟨Σ
+// s²⟩/N, and the share in the largest. Tested: test_clusters.
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/sample_series.h"
 
+#include <stdio.h>
+#include <string.h>
+
 struct settings {
     double distance;
+    char types[FIELD_TEXT_SIZE]; ///< "T" or "H T"; "": all
 };
 
 /// Of a sample: Σ s²/N, and the share of all particles in the largest.
 enum { MEAN, LARGEST, NUMBERS };
 
 struct state {
-    struct settings settings;
-    size_t count;
+    double distance;
+    size_t count; ///< of particles that can belong to one
+    bool *counts; ///< shape [particles]: whether that one can, or NULL: all can
+    size_t particles;
     struct sample_series series;
-    uint32_t *root;  ///< shape [count]: a particle of the same cluster, or itself
-    uint32_t *size;  ///< shape [count]: of the cluster, at its root
+    uint32_t *root;  ///< shape [particles]: a particle of the same cluster, or itself
+    uint32_t *size;  ///< shape [particles]: of the cluster, at its root
     double *members; ///< shape [count + 1]: particles in clusters of each size, over all samples
 };
 
 static void clear(void *state) {
     struct state *s = state;
+    mf_memory_free(s->counts);
     mf_memory_free(s->root);
     mf_memory_free(s->size);
     mf_memory_free(s->members);
@@ -34,24 +42,59 @@ static void clear(void *state) {
     *s = (struct state){0};
 }
 
+/// Mark the particles of the type that a word names.
+static enum status mark(struct state *s, const struct composition *composition, const char *word) {
+    int type = 0;
+    while (type < composition->types && strcmp(composition->name[type], word) != 0)
+        type++;
+    if (type >= composition->types)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "clusters.types: \"%.64s\" is no type of the scene; name those that "
+                              "count, as \"A\" or \"A B\"",
+                              word);
+    for (size_t k = 0; k < s->particles; k++)
+        if (mf_composition_type(composition, (uint32_t)k) == type && !s->counts[k]) {
+            s->counts[k] = true;
+            s->count++;
+        }
+    return STATUS_OK;
+}
+
+/// Mark those of all types that are named.
+static enum status choose(struct state *s, const struct composition *composition,
+                          const char *types) {
+    char words[FIELD_TEXT_SIZE];
+    snprintf(words, sizeof words, "%s", types);
+    TRY_ARRAY(s->counts, s->particles);
+    s->count = 0;
+    for (char *rest, *word = strtok_r(words, " ,", &rest); word; word = strtok_r(NULL, " ,", &rest))
+        TRY(mark(s, composition, word));
+    return s->count > 0 ? STATUS_OK
+                        : mf_status_fail(STATUS_BAD_INPUT, "clusters.types: no type is named");
+}
+
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
     struct state *s = state;
     (void)plan;
-    *s = (struct state){.settings = *(const struct settings *)settings,
+    const struct settings *wanted = settings;
+    *s = (struct state){.distance = wanted->distance,
                         .count = simulation->particles.count,
+                        .particles = simulation->particles.count,
                         .series.columns = NUMBERS};
     const double range = mf_simulation_range(&simulation->setup);
-    if (s->settings.distance > range * (1 + 1e-9))
+    if (s->distance > range * (1 + 1e-9))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "clusters.distance: %g is beyond %g, the range of the interactions, "
                               "for which pairs are known",
-                              s->settings.distance, range);
+                              s->distance, range);
     if (simulation->particles.topology && simulation->particles.topology->excludes)
         return mf_status_fail(STATUS_BAD_INPUT, "clusters: excluded pairs of molecules are not "
                                                 "counted as bonds of clusters; set \"exclude\": 0");
-    TRY_ARRAY(s->root, s->count);
-    TRY_ARRAY(s->size, s->count);
+    if (wanted->types[0])
+        TRY(choose(s, &simulation->setup.composition, wanted->types));
+    TRY_ARRAY(s->root, s->particles);
+    TRY_ARRAY(s->size, s->particles);
     TRY_ARRAY(s->members, s->count + 1);
     return STATUS_OK;
 }
@@ -67,6 +110,8 @@ static uint32_t find_root(uint32_t *root, uint32_t k) {
 static void join(void *context, const struct neighbours_batch *batch) {
     struct state *s = context;
     for (size_t n = 0; n < batch->count; n++) {
+        if (s->counts && !(s->counts[batch->id_i[n]] && s->counts[batch->id_j[n]]))
+            continue;
         const uint32_t a = find_root(s->root, batch->id_i[n]);
         const uint32_t b = find_root(s->root, batch->id_j[n]);
         const uint32_t low = s->size[a] < s->size[b] ? a : b, high = low == a ? b : a;
@@ -80,14 +125,15 @@ static void join(void *context, const struct neighbours_batch *batch) {
 static enum status sample(void *state, struct simulation *simulation) {
     struct state *s = state;
     double squares = 0, largest = 0;
-    for (size_t k = 0; k < s->count; k++) {
+    for (size_t k = 0; k < s->particles; k++) {
         s->root[k] = (uint32_t)k;
         s->size[k] = 1;
     }
-    mf_neighbours_visit_pairs(&simulation->neighbours, &simulation->particles, s->settings.distance,
-                              join, s);
-    for (size_t k = 0; k < s->count; k++) {
-        const double size = s->root[k] == k ? s->size[k] : 0;
+    mf_neighbours_visit_pairs(&simulation->neighbours, &simulation->particles, s->distance, join,
+                              s);
+    for (size_t k = 0; k < s->particles; k++) {
+        const bool leads = s->root[k] == k && (s->counts == NULL || s->counts[k]);
+        const double size = leads ? s->size[k] : 0;
         s->members[(size_t)size] += size;
         squares += size * size;
         largest = fmax(largest, size);
@@ -156,6 +202,8 @@ static const struct field fields[] = {
     {"distance", FIELD_NUMBER, offsetof(struct settings, distance), .required = true,
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda",
      .help = "largest distance of neighbours, at most the range of the interactions"},
+    {"types", FIELD_TEXT, offsetof(struct settings, types), .unit = "",
+     .help = "types whose particles count, as \"T\" or \"H T\"; without it all do"},
     FIELD_END,
 };
 static const char *const files[] = {"clusters.tsv", NULL};

@@ -402,5 +402,5 @@ const struct observable mf_molecule_sizes = {
     .explain = explain,
     .stage = "sizes of molecules",
     .files = files,
-    .figure = OBSERVABLE_FIGURE_OF_GROUPS,
+    .figure = "molecule_sizes",
 };

@@ -7,6 +7,7 @@
 #include "observe/thermodynamics.h"
 
 #include <math.h>
+#include <string.h>
 
 static enum status begin(void *state, const void *settings, const struct simulation *simulation,
                          const struct measure_plan *plan) {
@@ -122,6 +123,34 @@ static void write_summary(const void *state, const struct observable_results *re
     mf_units_write_results(results->units, writer, s.potential_energy, s.pressure);
 }
 
+/// What everybody looks at first: T, U and p of those that there are.
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
+    const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
+    const double known = s.blocks > 1 ? 1 : NAN;
+    const struct {
+        const char *name, *unit;
+        double value, error;
+    } numbers[] = {
+        {"T = ", "T_0", s.temperature, s.temperature_error},
+        {"T from forces = ", "T_0", s.temperature_configurational,
+         s.temperature_configurational_error},
+        {"U of a bead = ", "k_B T_0", s.potential_energy, s.potential_energy_error},
+        {"pressure ", "k_B T_0/lambda^d", s.pressure, s.pressure_error},
+    };
+    line[0] = '\0';
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        char text[UNITS_MEASURED_SIZE];
+        const size_t length = strlen(line);
+        if (!isfinite(numbers[k].value))
+            continue;
+        mf_units_measured(results->units, numbers[k].unit, numbers[k].value,
+                          known * numbers[k].error, text);
+        snprintf(line + length, size - length, "%s%s%s", length > 0 ? ", " : "", numbers[k].name,
+                 text);
+    }
+}
+
 /// Nanoseconds of a pair and sample: of the sums, and of the configurational temperature.
 static const double sum_cost = 0.2, curvature_cost = 8;
 
@@ -165,6 +194,7 @@ const struct observable mf_thermodynamics_observable = {
     .reserve = reserve,
     .write = write,
     .write_summary = write_summary,
+    .print = print,
     .assess = assess,
     .explain = explain,
     .stage = sums_stage,

@@ -269,8 +269,8 @@ struct inverse_progress {
     uint32_t iteration;
     uint32_t iterations;  ///< at most
     uint64_t done, total; ///< parts of this iteration
-    double best;          ///< error of the best so far; not finite if not known yet
-    double min, mean;     ///< of this iteration's candidates; not finite without
+    double best;          ///< error of the best so far; 0 or not finite if not known yet
+    double min, mean;     ///< of this iteration's candidates; 0 or not finite without
     uint64_t failures;    ///< simulations that left their temperature or blew up
     struct inverse_doubling doubling;
     const struct inverse_candidate *candidate; ///< the last one; NULL: there is none

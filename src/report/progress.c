@@ -110,7 +110,7 @@ static void write_line(struct progress *progress, const struct watcher_progress 
     fprintf(stderr, "%s  %3.0f %%", reported->text,
             100 * (double)reported->done / (double)reported->total);
     mf_progress_rate_text(reported->rate, reported->unit, rate);
-    if (!reported->open)
+    if (!reported->open && reported->rate > 0)
         fprintf(stderr, "  %s", rate);
     if (left[0])
         fprintf(stderr, "  %s left", left);

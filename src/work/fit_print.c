@@ -118,6 +118,11 @@ enum status mf_fit_print_targets(struct progress *to, const struct fit_file *fit
     return STATUS_OK;
 }
 
+/// No fit is without an error: 0 is what nobody has set yet.
+static bool is_known(double error) {
+    return isfinite(error) && error > 0;
+}
+
 void mf_fit_print_iteration(const struct inverse_progress *now, const struct units *units,
                             char text[FIT_TELL_SIZE]) {
     const struct inverse_doubling *doubling = &now->doubling;
@@ -130,11 +135,11 @@ void mf_fit_print_iteration(const struct inverse_progress *now, const struct uni
                  factor * doubling->wanted, mf_units_suffix(units, doubling->unit, unit));
         return;
     }
-    if (isfinite(now->best))
+    if (is_known(now->best))
         snprintf(error, sizeof error, "  error %.4f so far", now->best);
-    if (isfinite(now->min))
+    if (is_known(now->min))
         snprintf(min, sizeof min, "  this round: best %.4f", now->min);
-    if (isfinite(now->mean))
+    if (is_known(now->mean))
         snprintf(mean, sizeof mean, ", mean %.4f, %llu failed", now->mean,
                  (unsigned long long)now->failures);
     snprintf(text, FIT_TELL_SIZE, "iteration %u%s%s%s", now->iteration, error, min, mean);

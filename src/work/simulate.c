@@ -145,7 +145,8 @@ static void report(void *context, const struct simulation *simulation, uint64_t 
     const struct units *units = &run->scene.units;
     char text[96], unit[UNITS_NAME_SIZE];
     snprintf(text, sizeof text, "step %llu", (unsigned long long)done);
-    if (simulation_has_velocities(&simulation->setup) && simulation->particles.count > 1)
+    if (done > 0 && simulation_has_velocities(&simulation->setup) &&
+        simulation->particles.count > 1)
         snprintf(text, sizeof text, "step %llu  T %.*f%s", (unsigned long long)done,
                  !mf_units_are_physical(units) ? 3 : 1,
                  mf_simulation_temperature(simulation) * mf_units_factor(units, "T_0"),

@@ -77,6 +77,9 @@ static void test_block_is_printed_and_stands_in_the_files(void **state) {
         free(text);
     }
     assert_contains(said, "NOT that of the result: a Langevin bath");
+    // What takes the time is said before it begins, not on a terminal alone.
+    const char *told = strstr(said, "steps of 81 beads, to tell what D is");
+    assert_true(told && told < strstr(said, "What of the dynamics"));
     // The one D of the result is that of its summary; what a bath does to it is a share.
     find_line(said, "D ", printed);
     const double diffusion = results_number("out/summary.json", "motion.diffusion_msd");
@@ -96,6 +99,7 @@ static void test_friction_that_an_engine_has_goes_along(void **state) {
     const char *said = export_to("espresso", NULL);
     assert_contains(said, "friction   that of the result: dpd with weight_function 1");
     assert_true(strstr(said, " in that bath") == NULL && strstr(said, "NOT") == NULL);
+    assert_null(strstr(said, "simulating"));
 }
 
 /// Where the configurational temperature is off by chance alone, the step is the result's; where

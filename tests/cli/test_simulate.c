@@ -8,8 +8,10 @@
 #include "shared/small_scenes.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void test_simulate_leaves_all_files_of_a_run(void **state) {
     static struct run_program_result result;
@@ -38,6 +40,37 @@ static void test_simulate_leaves_all_files_of_a_run(void **state) {
     results_assert_number("out/summary.json", "engine_steps", 300);
     results_assert_number("out/summary.json", "seed", 5);
     assert_false(temporary_folder_exists("out/checkpoint.bin"));
+}
+
+static double number_after(const char *text, const char *words) {
+    const char *found = strstr(text, words);
+    if (found == NULL)
+        fail_msg("no %s in %s", words, text);
+    return strtod(found + strlen(words), NULL);
+}
+
+/// R. D. Groot and P. B. Warren (1997) set T = 1 and found a pressure of 23.7 of this fluid; in nm
+/// it has other units, and Monte Carlo no velocities.
+static void test_simulate_ends_with_temperature_energy_and_pressure(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json");
+    run_program_assert_code(&result, 0);
+    assert_true(fabs(number_after(result.err, "T = ") - 1) < 0.05);
+    assert_true(fabs(number_after(result.err, "pressure ") / 23.7 - 1) < 0.05);
+    const double energy = results_number("out/summary.json", "potential_energy");
+    assert_true(fabs(number_after(result.err, "U of a bead = ") / energy - 1) < 0.01);
+    small_inputs_write(*state, "scene.json",
+                       "{\"units\": \"nm-ps\", \"box\": [2, 2, 2], \"particles\": {\"count\": 20}, "
+                       "\"temperature\": 300, \"conservative\": {\"law\": \"soft-repulsion\", "
+                       "\"a\": 10, \"cutoff\": 0.7}, \"dynamics\": {\"integrator\": "
+                       "\"monte-carlo\"}, \"measure\": {\"samples\": 20}}",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "walk");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "\nT = "));
+    const char *line = strstr(result.err, "U of a bead = ");
+    assert_true(line && strstr(line, " kJ/mol, pressure ") && strstr(line, " bar\n"));
 }
 
 static void test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture(void **state) {
@@ -333,15 +366,19 @@ static void test_quiet_run_says_nothing(void **state) {
     assert_string_equal(result.err, "");
 }
 
-/// A first line, a last one, one with the result, and between them one every five seconds.
+/// A first line, a last one, two with the result, and between them one every five seconds. The
+/// first has no temperature and no rate yet.
 static void test_progress_in_a_pipe_is_a_few_plain_lines(void **state) {
     static struct run_program_result result;
     small_inputs_need_gnuplot();
     small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
     small_scenes_simulate(&result, "out");
-    assert_in_range(run_program_lines(result.err), 2, 3 + (size_t)(result.seconds / 5));
+    assert_in_range(run_program_lines(result.err), 2, 4 + (size_t)(result.seconds / 5));
     assert_null(strchr(result.err, '\r'));
     assert_null(strchr(result.err, '\033'));
+    small_scenes_write(*state, small_scenes_dpd, "\"equilibration\": 100", "\"equilibration\": 0");
+    small_scenes_simulate(&result, "unsettled");
+    assert_contains(result.err, "step 0    0 %\n");
 }
 
 /// One sample has no error and no scatter, and is a result all the same.
@@ -441,6 +478,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_leaves_all_files_of_a_run),
         TEST(test_simulate_draws_diffusion_when_gnuplot_is_there),
         TEST_WITHOUT_FIGURES(test_simulate_measures_diffusion_when_asked),
+        TEST_WITHOUT_FIGURES(test_simulate_ends_with_temperature_energy_and_pressure),
         TEST_WITHOUT_FIGURES(test_simulate_leaves_a_table_for_each_pair_type_of_a_mixture),
         TEST_WITHOUT_FIGURES(test_simulate_says_what_memory_many_particles_take),
         TEST_WITHOUT_FIGURES(test_explain_of_many_particles_takes_no_gigabytes),

@@ -99,6 +99,7 @@ class Page(PageTest):
         self.browser.execute_script("scrollTo(0, 0)")
         self.shoot("simulation")
         self.check_pixels(canvas)
+        self.check_types(canvas)
         self.check_console()
 
     def step(self):
@@ -106,9 +107,25 @@ class Page(PageTest):
             "const box = [...document.querySelectorAll('#numbers div')].find((e) => e.querySelector('span').textContent === 'step');"
             "return box ? Number(box.querySelector('b').textContent) : -1")
 
+    def check_types(self, canvas):
+        """The legend names the types in the colours of figures, and leaves one out."""
+        labels = [e for e in self.at("types").find_elements("tag name", "label") if e.is_displayed()]
+        self.assertEqual([e.text.strip() for e in labels], ["A", "B"])
+        bead = labels[1].find_element("class name", "bead").value_of_css_property("background-color")
+        self.assertEqual([int(n) for n in bead[bead.index("(") + 1:-1].split(",")[:3]], [0xd5, 0x5e, 0])
+        labels[1].click()
+        self.wait(lambda: self.count_pixels(canvas)[1] == 0)
+        self.assertGreater(self.count_pixels(canvas)[0], 200)
+        labels[1].click()
+
     def check_pixels(self, canvas):
         """Two types are drawn in two colours."""
-        blue, red = self.browser.execute_async_script("""
+        blue, red = self.count_pixels(canvas)
+        self.assertGreater(blue, 200)
+        self.assertGreater(red, 200)
+
+    def count_pixels(self, canvas):
+        return self.browser.execute_async_script("""
             const [text, done] = arguments, bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
             createImageBitmap(new Blob([bytes], { type: "image/png" })).then((image) => {
                 const canvas = Object.assign(document.createElement("canvas"), { width: image.width, height: image.height });
@@ -122,8 +139,6 @@ class Page(PageTest):
                 }
                 done([blue, red]);
             });""", canvas.screenshot_as_base64)
-        self.assertGreater(blue, 200)
-        self.assertGreater(red, 200)
 
     def test_temperature_and_time_step_change_while_it_runs(self):
         self.begin("live", "scene.json", "-o", "changed", "--stay")

@@ -21,6 +21,8 @@ def read(frame):
     places = struct.unpack_from(f"={3 * count}f", frame, at)
     at += 16 * count + (8 * count if parts & POLARITY else 0)
     energies = struct.unpack_from(f"={count}f", frame, at) if parts & ENERGY else None
+    names = [name.rstrip(b"\0") for name in struct.unpack("16s" * types, frame[-8 * 16:][:16 * types])]
+    assert names == [b"A", b"B"], names
     return parts, box, counts, [places[3 * k:3 * k + 3] for k in range(count)], energies
 
 

@@ -12,11 +12,19 @@
 
 extern const struct observable mf_clusters, mf_local_density;
 
+struct settings {
+    double distance;
+    char types[FIELD_TEXT_SIZE];
+};
+
 enum { COUNT = 9 };
 /// A chain of four through the edge of the box, a pair, three alone.
 static const double x[COUNT] = {0.1, 0.7, 4.6, 4.0, 2.5, 2.5, 1.5, 3.5, 2.5};
 static const double y[COUNT] = {1, 1, 1, 1, 3, 3.6, 4.5, 4.5, 1.5};
 static const struct measure_plan plan = {.equilibration = 0, .samples = 1, .every = 1};
+
+/// The chain but its last particle, and the others.
+static const struct composition mixture = {2, {3, 6}, {"A", "B"}};
 
 static void make(struct fluid *fluid, struct simulation *simulation) {
     const struct simulation_start start = {.position = {x, y}, .velocity = {NULL}};
@@ -34,6 +42,7 @@ static void take(const struct observable *observable, const void *settings,
     char path[OUTPUT_PATH_SIZE];
     assert_true(observable->state_size <= sizeof state);
     make(&fluid, &simulation);
+    simulation.setup.composition = mixture;
     assert_ok(observable->begin(state, settings, &simulation, &plan));
     assert_ok(observable->sample(state, &simulation));
     const struct observable_results results = {.folder = folder};
@@ -47,7 +56,7 @@ static void take(const struct observable *observable, const void *settings,
 
 static void test_clusters_join_through_the_edges_of_the_box(void **state) {
     struct temporary_folder *folder = *state;
-    static const struct { double distance; } settings = {0.7};
+    static const struct settings settings = {.distance = 0.7};
     static const double expected[] = {1, 3.0 / 9, 3, 2, 2.0 / 9, 1, 4, 4.0 / 9, 1};
     struct data_table table = {0};
     take(&mf_clusters, &settings, &table, folder->path);
@@ -57,9 +66,46 @@ static void test_clusters_join_through_the_edges_of_the_box(void **state) {
     mf_data_table_clear(&table);
 }
 
+/// Without the others three of the chain are left; without those, its last one is alone.
+static void test_clusters_of_a_type_do_not_see_the_others(void **state) {
+    struct temporary_folder *folder = *state;
+    static const struct settings settings[] = {
+        {0.7, "A"}, {0.7, "B"}, {0.7, "A B"}, {.distance = 0.7}};
+    static const double expected[][9] = {{3, 1, 1},
+                                         {1, 4.0 / 6, 4, 2, 2.0 / 6, 1},
+                                         {1, 3.0 / 9, 3, 2, 2.0 / 9, 1, 4, 4.0 / 9, 1},
+                                         {1, 3.0 / 9, 3, 2, 2.0 / 9, 1, 4, 4.0 / 9, 1}};
+    static const size_t rows[] = {1, 2, 3, 3};
+    for (int n = 0; n < 4; n++) {
+        struct data_table table = {0};
+        take(&mf_clusters, &settings[n], &table, folder->path);
+        assert_int_equal(table.rows, rows[n]);
+        for (size_t k = 0; k < 3 * rows[n]; k++)
+            assert_close(table.values[k], expected[n][k], 1e-6);
+        mf_data_table_clear(&table);
+    }
+}
+
+static void test_clusters_refuse_a_type_that_is_none(void **state) {
+    (void)state;
+    static const struct settings settings[] = {{0.7, "A C"}, {0.7, " "}};
+    struct fluid fluid;
+    struct simulation simulation;
+    make(&fluid, &simulation);
+    simulation.setup.composition = mixture;
+    for (int n = 0; n < 2; n++) {
+        double own[64] = {0};
+        assert_fails(mf_clusters.begin(own, &settings[n], &simulation, &plan), STATUS_BAD_INPUT,
+                     n == 0 ? "clusters.types: \"C\" is no type" : "clusters.types: no type");
+        mf_clusters.clear(own);
+    }
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
 static void test_clusters_refuse_a_distance_beyond_the_list(void **state) {
     (void)state;
-    static const struct { double distance; } settings = {1.2};
+    static const struct settings settings = {.distance = 1.2};
     struct fluid fluid;
     struct simulation simulation;
     double own[64] = {0};
@@ -93,6 +139,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_clusters_join_through_the_edges_of_the_box,
                                         temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(test_clusters_of_a_type_do_not_see_the_others,
+                                        temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test(test_clusters_refuse_a_type_that_is_none),
         cmocka_unit_test(test_clusters_refuse_a_distance_beyond_the_list),
         cmocka_unit_test_setup_teardown(test_local_density_counts_cells_by_their_particles,
                                         temporary_folder_create, temporary_folder_remove),

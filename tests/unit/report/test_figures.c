@@ -361,6 +361,10 @@ static void test_pairs_are_drawn_of_their_own_tables_only(void **state) {
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "rdf_A-B"));
     assert_true(figure_folders_drawn(folder, "potential_A-B"));
+    // As a title, of which the axis has the index, so that figures of one mixture can be told
+    // apart.
+    assert_true(figure_folders_print(folder, "rdf_A-B", ">A-B<"));
+    assert_true(figure_folders_print(folder, "potential_A-B", ">A-B<"));
     assert_false(figure_folders_drawn(folder, "potential_A-of_history"));
     assert_false(figure_folders_drawn(folder, "rdf_now_A-B"));
     assert_false(figure_folders_drawn(folder, "potential_A-B_history"));

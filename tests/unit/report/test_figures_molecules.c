@@ -69,6 +69,7 @@ static void test_distributions_have_their_units(void **state) {
     figure_folders_draw(folder);
     assert_true(figure_folders_print(folder, "bond_angles_bend", "degrees"));
     assert_true(figure_folders_print(folder, "bond_angles_bend", "target"));
+    assert_true(figure_folders_print(folder, "bond_angles_bend", ">bend<"));
     assert_true(figure_folders_print(folder, "bond_lengths", ">-1<"));
 }
 

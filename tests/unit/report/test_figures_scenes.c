@@ -203,6 +203,17 @@ static void test_pressure_is_over_lengths_of_as_many_dimensions(void **state) {
     }
 }
 
+/// All particles are one cluster: its size is on the axis.
+static void test_the_one_size_of_clusters_is_told(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "one cluster");
+    figure_folders_write(folder, "clusters.tsv", "# size[1]\tshare[1]\tclusters[1]\n3000\t1\t1\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_print(folder, "clusters", ">3000<"));
+}
+
 /// Sweeps of Monte Carlo are no times, and have no unit.
 static void test_vectors_of_molecules_live_for_times_or_sweeps(void **state) {
     (void)state;
@@ -219,6 +230,8 @@ static void test_vectors_of_molecules_live_for_times_or_sweeps(void **state) {
         assert_int_equal(figure_folders_print(folder, "molecule_sizes", "sweeps"), sweeps);
         assert_int_equal(figure_folders_print(folder, "molecule_sizes", "τ"), !sweeps);
         assert_true(figure_folders_print(folder, "molecule_sizes", "⟨"));
+        assert_true(figure_folders_print(folder, "molecule_sizes", "chain: end to end"));
+        assert_true(figure_folders_print(folder, "molecule_sizes", "radius of gyration"));
     }
 }
 
@@ -257,6 +270,7 @@ int main(void) {
         cmocka_unit_test(test_bonds_are_drawn_over_the_edges_of_the_box),
         cmocka_unit_test(test_flow_shows_its_obstacle),
         cmocka_unit_test(test_pressure_is_over_lengths_of_as_many_dimensions),
+        cmocka_unit_test(test_the_one_size_of_clusters_is_told),
         cmocka_unit_test(test_vectors_of_molecules_live_for_times_or_sweeps),
         cmocka_unit_test(test_groups_of_a_fit_have_the_colours_of_its_rdf),
     };

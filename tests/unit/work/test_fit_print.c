@@ -36,6 +36,12 @@ static void test_iteration_tells_the_errors_that_it_knows(void **state) {
                 "iteration 3  error 0.0123 so far  this round: best 0.0200, mean 0.5000, 2 failed");
 }
 
+/// As the samples of single molecules report before a fit has begun.
+static void test_iteration_tells_no_errors_that_nobody_has_set(void **state) {
+    (void)state;
+    assert_says(&(struct inverse_progress){.iterations = 40}, &(struct units){0}, "iteration 0");
+}
+
 /// Integrals have a unit, in which the files speak: here 2 nm is the unit of length.
 static void test_iteration_tells_of_samples_that_are_doubled(void **state) {
     (void)state;
@@ -99,6 +105,7 @@ int main(void) {
         return 1;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_iteration_tells_the_errors_that_it_knows),
+        cmocka_unit_test(test_iteration_tells_no_errors_that_nobody_has_set),
         cmocka_unit_test(test_iteration_tells_of_samples_that_are_doubled),
         cmocka_unit_test_setup_teardown(test_fit_of_molecules_warns_of_g_that_ends_beside_1,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
