@@ -187,7 +187,7 @@ static void test_populations_have_not_agreed_by_the_noise_of_their_own_simulatio
         assert_summary("finished", "its \\\"rounds\\\" are used up");
         fit_a(*state, 10, 25, seed, &result);
         assert_summary("finished", "no larger than that of the targets");
-        assert_close(results_parameter("out/summary.json", "conservative.a", "value"), 25, 1.5);
+        assert_close(results_parameter("out/summary.json", "conservative.a", "value"), 25, 1);
     }
 }
 
