@@ -54,7 +54,8 @@ struct state {
         int stage;            ///< of `check`
         uint64_t checked;     ///< evaluations when the best candidate was last measured
         uint32_t last_better; ///< iteration in which the error fell last
-        uint32_t met;         ///< checks after which it agreed with the targets but for noise
+        uint32_t met;         ///< checks after which it agreed with the targets but for their noise
+        int64_t length;       ///< of the measurements of the best, in units of "check_length"
         bool known;           ///< whether there is a best
         double error, noise;  ///< of the best: the mean of its fresh measurements
         double variance;      ///< of that mean
@@ -80,8 +81,8 @@ static const struct field own_fields[] = {
     {"agreements", FIELD_INTEGER, MEMBER(agreements), .initial = 8, .minimum = 0, .maximum = 1e6,
      .unit = "",
      .help =
-         "measurements of the best that agree with the targets but for noise, which end the fit; "
-         "0: none"},
+         "measurements of the best that agree with the targets but for their noise, which end the "
+         "fit; 0: none"},
     FIELD_END,
 };
 
@@ -147,6 +148,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     state->problem = problem;
     state->optimiser = driven->optimiser;
     state->progress.error = NAN;
+    state->progress.length = 1;
     TRY(mf_parametrisation_init(&state->parametrisation, problem));
     TRY_ARRAY(state->best_candidate, state->parametrisation.variables);
     TRY_ARRAY(state->best, state->parametrisation.variables);
@@ -190,22 +192,35 @@ static enum status take_round(struct state *state, const struct optimiser_round 
 }
 
 /// Whether what is thought best is to be measured: something new, and not more than one evaluation
-/// in ten goes into such measurements but for the last.
+/// in ten goes into such measurements but for the last, or as much as into the rounds where they
+/// have become longer.
 static bool wants_check(const struct state *state, bool last) {
     const size_t bytes = state->parametrisation.variables * sizeof(double);
     if (state->progress.known && memcmp(state->best_candidate, state->best, bytes) == 0)
         return false;
     const uint64_t since = state->population.totals.evaluations - state->progress.checked;
-    return last || !state->progress.known || since >= 10 * (uint64_t)state->parameters.checks;
+    const int64_t each = state->progress.length > 5 ? 2 * state->progress.length : 10;
+    return last || !state->progress.known || since >= (uint64_t)(each * state->parameters.checks);
+}
+
+static enum status measure_afresh(struct state *state, const double *variables,
+                                  struct population_check *check) {
+    return mf_population_check(&state->population, variables, (size_t)state->parameters.checks,
+                               state->parameters.check_length * state->progress.length, check);
+}
+
+static void take(struct progress *progress, const struct population_check *check) {
+    progress->known = check->error < OPTIMISER_FAILED;
+    progress->error = progress->known ? check->error : NAN;
+    progress->noise = check->noise;
+    progress->variance = check->variance;
 }
 
 /// Measure the best candidate afresh and keep it if it is better than the best so far, or as good
 /// within `slack` standard errors.
 static enum status check_best_candidate(struct state *state, double slack) {
     struct population_check check;
-    TRY(mf_population_check(&state->population, state->best_candidate,
-                            (size_t)state->parameters.checks, state->parameters.check_length,
-                            &check));
+    TRY(measure_afresh(state, state->best_candidate, &check));
     if (check.error >= OPTIMISER_FAILED ||
         (state->progress.known &&
          check.error > state->progress.error + slack * sqrt(check.variance)))
@@ -213,10 +228,7 @@ static enum status check_best_candidate(struct state *state, double slack) {
     memcpy(state->best, state->best_candidate, state->parametrisation.variables * sizeof(double));
     if (!state->progress.known || check.error < state->progress.error)
         state->progress.last_better = state->progress.iteration;
-    state->progress.known = true;
-    state->progress.error = check.error;
-    state->progress.noise = check.noise;
-    state->progress.variance = check.variance;
+    take(&state->progress, &check);
     return STATUS_OK;
 }
 
@@ -242,25 +254,41 @@ done:
     return status;
 }
 
-/// Whether the fit has been at the noise of its simulations for long enough: these then tell no
+/// Whether the fit has been at the noise of its targets for long enough: these then tell no
 /// candidate from another, and its linear model has learnt from many of them.
 static bool rests(const struct state *state) {
     return state->parameters.agreements > 0 &&
            state->progress.met >= (uint64_t)state->parameters.agreements;
 }
 
-/// After the best was measured afresh.
-static void count_met(struct progress *progress) {
+/// Whether the best is off by no more than noise, as it was measured last.
+static bool agrees(const struct progress *progress) {
     static const double chance = 2; // standard errors of the error
-    progress->met +=
-        progress->known && progress->error - chance * sqrt(progress->variance) <= progress->noise;
+    return progress->known &&
+           progress->error - chance * sqrt(progress->variance) <= progress->noise;
+}
+
+/// Whether the larger part of the noise is that of the fit's own simulations: agreement then says
+/// little, and they have to be longer.
+static bool hides(const struct state *state) {
+    const double own = mf_targets_own_noise(&state->problem->targets);
+    return state->parameters.agreements > 0 &&
+           state->progress.noise * state->progress.noise > 2 * own * own;
+}
+
+/// Measure the best again, as it has not been chosen by: the error by which it was is too small.
+static enum status measure_longer(struct state *state) {
+    struct population_check check;
+    TRY(measure_afresh(state, state->best, &check));
+    take(&state->progress, &check);
+    return STATUS_OK;
 }
 
 static void rest(const struct state *state, struct inverse_step *step) {
     step->exhausted = true;
     snprintf(step->reason, sizeof step->reason,
-             "its best has agreed with the targets but for noise %d times (\"agreements\"); "
-             "longer simulations (\"samples\") tell candidates apart",
+             "its best has agreed with the targets but for noise %d times (\"agreements\"), in "
+             "simulations whose own noise is no larger than that of the targets",
              (int)state->parameters.agreements);
 }
 
@@ -305,7 +333,7 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
 /// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
 /// also if an interruption comes between them.
 static enum status check(struct state *state, bool last) {
-    enum { NOTHING, INCUMBENT, SURROGATE };
+    enum { NOTHING, INCUMBENT, SURROGATE, LONGER };
     struct progress *progress = &state->progress;
     if (!state->optimiser->best_candidate(state->optimiser_state, state->best_candidate))
         return STATUS_OK;
@@ -317,9 +345,16 @@ static enum status check(struct state *state, bool last) {
     }
     if (progress->stage == SURROGATE) {
         TRY(try_surrogate(state));
+        const bool met = agrees(progress), longer = met && hides(state);
+        progress->stage = longer ? LONGER : NOTHING;
+        progress->length *= longer ? 2 : 1;
+        progress->met += met && !longer;
+        progress->checked = state->population.totals.evaluations;
+    }
+    if (progress->stage == LONGER) {
+        TRY(measure_longer(state));
         progress->stage = NOTHING;
         progress->checked = state->population.totals.evaluations;
-        count_met(progress);
     }
     return STATUS_OK;
 }

@@ -67,16 +67,19 @@ struct target_distance mf_targets_worst(const struct target *target, const doubl
     return worst;
 }
 
-double mf_targets_weight(const struct target *target) {
-    if (target->weight > 0)
-        return target->weight;
+/// The rms of the standard errors of a target.
+static double error_of(const struct target *target) {
     double sum = 0, count = 0;
     for (size_t k = 0; k < target->count; k++)
         if (isfinite(target->error[k]) && target->error[k] > 0) {
             sum += target->error[k] * target->error[k];
             count += 1;
         }
-    return 1 / (count > 0 ? sqrt(sum / count) : assumed_error);
+    return count > 0 ? sqrt(sum / count) : assumed_error;
+}
+
+double mf_targets_weight(const struct target *target) {
+    return target->weight > 0 ? target->weight : 1 / error_of(target);
 }
 
 static double combine(const struct targets *targets, const struct target_distance *distance,
@@ -122,6 +125,14 @@ double mf_targets_error(const struct targets *targets, const struct target_dista
 
 double mf_targets_noise(const struct targets *targets, const struct target_distance *distance) {
     return combine(targets, distance, noise_of);
+}
+
+double mf_targets_own_noise(const struct targets *targets) {
+    struct target_distance distance[TARGETS] = {0};
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (targets_ask(targets, kind))
+            distance[kind].noise = error_of(&targets->target[kind]);
+    return mf_targets_noise(targets, distance);
 }
 
 /// Blocks of a matrix along each axis.

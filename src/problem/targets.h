@@ -93,6 +93,11 @@ double mf_targets_variance(const struct targets *targets, const struct target_di
 /// The same sum over the noise of each.
 double mf_targets_noise(const struct targets *targets, const struct target_distance *distance);
 
+/// The noise that the targets have by themselves, in the same sum: what the exactest measurement
+/// leaves of mf_targets_noise. A target without errors has those that its weight assumes.
+/// Tested: test_targets.
+double mf_targets_own_noise(const struct targets *targets);
+
 /// @name Features: the targets in few enough numbers for a linear model
 /// Values as they are, but a matrix, E(t, r_0), as means over blocks of cells, 10 by 10, without
 /// its first row; and distributions as means over their blocks, over those of the target.

@@ -98,6 +98,26 @@ static void test_targets_error_is_1_at_the_errors_of_several_targets(void **stat
     assert_close(mf_targets_error(&weighted, distance), sqrt(0.5 * (9 + 16)), 1e-12);
 }
 
+static void test_targets_own_noise_is_that_which_an_exact_measurement_leaves(void **state) {
+    (void)state;
+    const double value[] = {1, 2}, small[] = {0.003, 0.004}, large[] = {5, 5}, exact[] = {0, 0};
+    struct targets targets = {.target[TARGET_RDF] = {.count = 2, .value = value, .error = small}};
+    struct target_distance distance[TARGETS] = {0};
+    distance[TARGET_RDF] = mf_targets_distance(&targets.target[TARGET_RDF], value, exact);
+    assert_close(mf_targets_own_noise(&targets), mf_targets_noise(&targets, distance), 1e-15);
+    assert_close(mf_targets_own_noise(&targets), 0.0025 * sqrt(2), 1e-15);
+    targets.target[TARGET_RDF].weight = 300;
+    targets.target[TARGET_DIFFUSION] =
+        (struct target){.count = 1, .value = value, .error = large, .weight = 0.8};
+    distance[TARGET_DIFFUSION] =
+        mf_targets_distance(&targets.target[TARGET_DIFFUSION], value, exact);
+    assert_close(mf_targets_own_noise(&targets), mf_targets_noise(&targets, distance), 1e-12);
+    // Without errors it is a number that simulations can reach.
+    const struct targets bare = {
+        .target[TARGET_RDF] = {.count = 2, .value = value, .error = exact}};
+    assert_close(mf_targets_own_noise(&bare), 0.01, 1e-12);
+}
+
 /// E of time and bin; the first time, which is no measurement, would spoil every mean.
 static void make_cells(double *value, double *error) {
     for (int t = 0; t < TIMES; t++)
@@ -275,6 +295,7 @@ int main(void) {
         cmocka_unit_test(test_targets_weight_is_one_over_the_errors_when_none_is_given),
         cmocka_unit_test(test_targets_error_is_that_of_a_single_target_as_it_is),
         cmocka_unit_test(test_targets_error_is_1_at_the_errors_of_several_targets),
+        cmocka_unit_test(test_targets_own_noise_is_that_which_an_exact_measurement_leaves),
         cmocka_unit_test(test_targets_features_are_means_over_ten_by_ten_blocks_of_escape_times),
         cmocka_unit_test(test_targets_features_use_every_cell_once_when_ten_does_not_divide_them),
         cmocka_unit_test(test_targets_features_of_the_target_stand_in_for_what_was_not_measured),
