@@ -30,9 +30,27 @@ for folder; do
         done
         ;;
     two-dimensions)
-        for name in lennard-jones wca shoulder-0.1 shoulder-0.3; do
+        for name in lennard-jones wca shoulder-0.1 shoulder-0.3 shoulder-cold; do
             simulate "$PWD/truth-$name.json" "-$name"
         done
+        ;;
+    shoulder)
+        for name in cold warm; do
+            simulate "$PWD/truth-$name.json" "-$name"
+        done
+        ;;
+    star-polymer)
+        # Likos and others, Phys. Rev. Lett. 80, 4450 (1998), in the diameter of the core.
+        awk 'BEGIN {
+            print "# r[lambda]\tphi[k_B T_0]"
+            a = 5 / 18 * 10 ^ 1.5
+            h = sqrt(10) / 2
+            for (k = 10; k <= 400; k++) {
+                r = k / 100
+                printf "%.2f\t%.8g\n", r, a * (r < 1 ? 1 / (1 + h) - log(r) : exp(-h * (r - 1)) / (1 + h) / r)
+            }
+        }' >law.tsv
+        simulate "$PWD/truth.json" ""
         ;;
     argon)
         simulate "$PWD/truth.json" ""

@@ -23,7 +23,23 @@ function law(pair, r) {
         return r < 8.5125 ? lennard_jones(r, 0.238065, 3.405) - lennard_jones(8.5125, 0.238065, 3.405) : 0
     if (member == "polymer-solvent")
         return r < 1 ? (pair == "P-S" ? 22 : 25) / 2 * (1 - r) ^ 2 : 0
+    if (member ~ /^shoulder/)
+        return r < 2.5 ? 1 / r ^ 14 + 1 / (1 + exp(20 * (r - 1.35))) - 1 / 2.5 ^ 14 - 1 / (1 + exp(23)) : 0
+    if (member == "hertzian")
+        return r < 1 ? 50 * (1 - r) ^ 2.5 : 0
+    if (member == "star-polymer")
+        return r < 4 ? star_polymer(r) - star_polymer(4) : 0
+    if (member == "double-well")
+        return r < 2.5 ? hilly(r) - hilly(2.5) : 0
     return r < 2.5 ? mixed(pair, r) - mixed(pair, 2.5) : 0
+}
+
+function hilly(r) { return lennard_jones(r, 1, 1) + exp(-((r - 1.5) / 0.2) ^ 2) }
+
+# Of ten arms: f = 10.
+function star_polymer(r,    h) {
+    h = sqrt(10) / 2
+    return 5 / 18 * 10 ^ 1.5 * (r < 1 ? 1 / (1 + h) - log(r) : exp(-h * (r - 1)) / (1 + h) / r)
 }
 
 function mixed(pair, r) {
