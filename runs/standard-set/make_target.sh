@@ -30,9 +30,32 @@ for folder; do
         done
         ;;
     two-dimensions)
-        for name in lennard-jones wca shoulder-0.1 shoulder-0.3; do
+        for name in lennard-jones wca shoulder-0.1 shoulder-0.3 shoulder-cold; do
             simulate "$PWD/truth-$name.json" "-$name"
         done
+        ;;
+    shoulder)
+        for name in cold warm; do
+            simulate "$PWD/truth-$name.json" "-$name"
+        done
+        ;;
+    mixture-sizes)
+        for name in attractive repulsive; do
+            simulate "$PWD/truth-$name.json" "-$name"
+        done
+        ;;
+    star-polymer)
+        # Likos and others, Phys. Rev. Lett. 80, 4450 (1998), in the diameter of the core.
+        awk 'BEGIN {
+            print "# r[lambda]\tphi[k_B T_0]"
+            a = 5 / 18 * 10 ^ 1.5
+            h = sqrt(10) / 2
+            for (k = 10; k <= 400; k++) {
+                r = k / 100
+                printf "%.2f\t%.8g\n", r, a * (r < 1 ? 1 / (1 + h) - log(r) : exp(-h * (r - 1)) / (1 + h) / r)
+            }
+        }' >law.tsv
+        simulate "$PWD/truth.json" ""
         ;;
     argon)
         simulate "$PWD/truth.json" ""
@@ -70,6 +93,19 @@ for folder; do
         "$program" measure "$work/trajectory.extxyz" --map map.json --molecules molecules.json --static --temperature 300 -o "$work/target" --quiet
         sed 's|"title":.*|"title":\t"n-Octane at 300 K, four beads a molecule",|' "$work/target/target.json" >target.json
         cp "$work"/target/rdf_*.tsv "$work"/target/bond_lengths.tsv "$work"/target/bond_angles.tsv .
+        ;;
+    kremer-grest | dumbbells | ring-melt)
+        # Bonded beads repel each other in the law; in the target no pair is counted that a bond or an angle joins.
+        "$program" simulate "$PWD/truth.json" -o "$work/out" --quiet
+        awk '/"molecules"/ { print "{"; inside = 1 }
+            inside { sub(/}},$/, "}}"); sub(/"exclude": 0, /, ""); print }
+            /}}$/ { inside = 0 }
+            END { print "}" }' truth.json >"$work/molecules.json"
+        "$program" measure "$work/out/snapshots/trajectory.lammpstrj" --molecules "$work/molecules.json" --file-units lj --static \
+            --temperature 1 --range 4.7 --bins 235 -o "$work/target" --quiet
+        for table in "$work"/target/rdf.tsv "$work"/target/bond_lengths.tsv "$work"/target/bond_angles.tsv; do
+            [ ! -e "$table" ] || sed '1s/nm\]/lambda]/g' "$table" >"$(basename "$table")"
+        done
         ;;
     mixture-solute)
         # By LAMMPS, since a scene has two beads of a type at least.

@@ -25,8 +25,10 @@ systems="
 gaussian-core-1 gaussian-core-2 gaussian-core-3 gaussian-core-4 gaussian-core-5 gaussian-core-6 gaussian-core-7 gaussian-core-8
 lennard-jones-triple lennard-jones-critical wca yukawa argon spc-water spce-water toluene toluene-pressure
 two-dimensions-lennard-jones two-dimensions-wca two-dimensions-shoulder-0.1 two-dimensions-shoulder-0.3
-mixture-votca mixture-dilute mixture-solute urea-water
-chain-in-vacuum chains-of-six rings polymer-solvent propane hexane octane acetone"
+shoulder-cold shoulder-warm hertzian star-polymer double-well two-dimensions-shoulder-cold
+mixture-votca mixture-dilute mixture-solute mixture-sizes-attractive mixture-sizes-repulsive urea-water
+chain-in-vacuum chains-of-six rings polymer-solvent propane hexane octane acetone
+kremer-grest dumbbells lennard-jones-chains ring-melt"
 
 # $1 system: its run file. FOLDER-SUFFIX is FOLDER/run-SUFFIX.json, FOLDER is FOLDER/run.json or, as `measure`
 # wrote it, FOLDER/target.json.
