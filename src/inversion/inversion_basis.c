@@ -149,8 +149,7 @@ static void fill_matrices(struct inversion_basis *basis, const struct inversion_
         memset(covered, 0, count * sizeof *covered);
         for (size_t b = 0; b < known; b++)
             for (size_t k = 0; k < count; k++)
-                covered[k] +=
-                    state->response.sampled[a * known + b] * basis->value[b * count + k];
+                covered[k] += state->response.sampled[a * known + b] * basis->value[b * count + k];
         for (size_t k = 0; k < count; k++)
             for (size_t n = 0; n < count; n++) {
                 basis->hessian[k * count + n] += row[k] * covered[n];

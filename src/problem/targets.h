@@ -27,8 +27,6 @@ struct target {
     size_t count;               ///< 0: not asked for
     const double *value;        ///< shape [count]; NaN: not known, left out
     const double *error;        ///< standard errors, shape [count]; NaN: not known, left out
-    bool own_errors;            ///< no errors are given: they are of each value by itself, found by
-                                ///< the scatter of the values, or assumed
     double weight;              ///< of its error in the sum; 0: one over the rms of its errors
     size_t columns;             ///< of a matrix, else 0
     const double *factor_error; ///< of g(r): relative error that all values of a pair type have in
@@ -37,6 +35,8 @@ struct target {
     const size_t *block; ///< of distributions: first values of the blocks that are its features,
                          ///< shape [blocks + 1]; NULL: none
     size_t blocks;
+    bool own_errors; ///< no errors are given: they are of each value by itself, found by the
+                     ///< scatter of the values, or assumed
 };
 
 /// Everything that is asked for, and how it was measured.

@@ -301,7 +301,7 @@ static const struct {
     {{"early.xtc", "last.xtc", "-s", "GRO"}, {"last.xtc: frame 0, at 0.08", "not 0.02"}},
     {{"XTC", "-s", "GRO", "--begin", "7"}, {"no frame is left"}},
     {{"XTC", "-s", "GRO", "--begin", "-5"}, {"--begin takes a number from 0 on, not \"-5\""}},
-    {{"XTC", "-s", "GRO", "--q-range", "1"}, {"frame 0: S(q): q_maximum 1 is below"}},
+    {{"XTC", "-s", "GRO", "--q-range", "1"}, {"frame 0: S(q), which --q-range 0 leaves out: q_maximum 1 is below"}},
     {{"XTC", "-s", "GRO", "--waves", "0"}, {"--waves takes a whole number from 1"}},
     {{"XTC", "-s", "GRO", "--range", "far"}, {"--range takes a number above 0"}},
     {{"XTC", "-s", "GRO", "--bins", "0"}, {"--bins takes a whole number"}},

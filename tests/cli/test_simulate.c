@@ -332,7 +332,7 @@ static void test_simulate_is_not_ok_when_its_temperature_is_another(void **state
     assert_null(strstr(result.err, "steps"));
 }
 
-/// Trimers whose energy still rises from that of molecules at rest, and the same after a while.
+/// Trimers whose beads have not yet moved apart, and the same after a while.
 static void test_simulate_warns_when_it_has_not_settled(void **state) {
     static const char plan[] = "\"equilibration\": 0, \"samples\": 100, \"every\": 5";
     static const char trimers[] =
@@ -346,7 +346,7 @@ static void test_simulate_warns_when_it_has_not_settled(void **state) {
     static struct run_program_result result;
     small_scenes_write(*state, trimers, NULL, NULL);
     small_scenes_simulate(&result, "out");
-    assert_contains(result.err, "mesofit: warning: the potential energy is 2.1");
+    assert_contains(result.err, "mesofit: warning: the potential energy is 2.");
     char *summary = temporary_folder_read("out/summary.json");
     assert_contains(summary, "in the rest: the run was not in equilibrium; equilibrate for longer");
     free(summary);
