@@ -41,7 +41,7 @@ static const char twin[] =
 #define COMPARED                                                                                   \
     "\"intermolecular_rdf\": {\"file\": \"twin/intermolecular_rdf.tsv\", \"fitted\": \"no\"}"
 #define METHOD                                                                                     \
-    "\"name\": \"gauss-newton\", \"iterations\": 12, \"equilibration\": 300, \"samples\": 60,\n"    \
+    "\"name\": \"gauss-newton\", \"iterations\": 12, \"equilibration\": 300, \"samples\": 60,\n"   \
     "  \"every\": 25, \"temperature_tolerance\": 0.5"
 #define UNKNOWN                                                                                    \
     "\"unknowns\": {\"numbers\": {\"conservative.a\": {\"minimum\": 5, \"maximum\": 60}}}"
