@@ -31,7 +31,8 @@ bool mf_imc_is_known(const struct inversion *inversion, double directions);
 /// The variances of what C predicts. C is itself sampled: of n independent samples C_ab has the
 /// variance (C_aa C_bb + C_ab²)/n (normal S), and so Σ_b C_ab x_b/k_B T has
 ///   (C_aa Σ_b C_bb x_b² + (Σ_b C_ab x_b)²)/(n (k_B T)²),
-/// where the last sum is about the excess, and x about the step of Boltzmann inversion. Several
+/// where C_aa is the part that is sampled (inversion_response.shared), the last sum is about the
+/// excess, and x about the step of Boltzmann inversion. Several
 /// pair types and groups have about as many bins as an iteration has independent samples: a step
 /// that removed the excess as far as its own noise would follow the noise of C, by thousands of k_B
 /// T.
