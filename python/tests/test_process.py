@@ -29,9 +29,10 @@ def german(tmp_path, monkeypatch):
                            str(tmp_path / "locales" / "de_DE.UTF-8")], capture_output=True)
     if made.returncode != 0:
         pytest.skip("localedef has no sources of de_DE (Debian: locales)")
+    before = locale.setlocale(locale.LC_ALL)
     locale.setlocale(locale.LC_ALL, "de_DE.UTF-8")
     yield
-    locale.setlocale(locale.LC_ALL, "C")
+    locale.setlocale(locale.LC_ALL, before)
 
 
 def test_a_comma_of_the_process_reaches_no_number(german, tmp_path):

@@ -153,7 +153,6 @@ enum status mf_inversion_noise_choose(const struct inversion_state *state,
     CHECK(measure(state, allowed, INVERSION_NOISE_OF_SAMPLES, &samples));
     CHECK(measure(state, allowed, INVERSION_NOISE_OF_BINS, &bins));
     *kind = samples <= bins ? INVERSION_NOISE_OF_SAMPLES : INVERSION_NOISE_OF_BINS;
-    fprintf(stderr, "DBG samples %.1f bins %.1f\n", samples, bins);
 done:
     gsl_matrix_free(allowed);
     return status;
