@@ -63,7 +63,8 @@ def test_a_digitised_rdf_gives_the_potential_that_made_it(place, monkeypatch):
     # Of the README there: g is 1.006 times too large; of Lennard-Jones argon the well, -0.238.
     assert number(r"normalisation +(\S+)", said) == pytest.approx(1.006, abs=0.004)
     error = number(r"well +\S+ ± (\S+)", said)
-    assert error < 0.12
+    # Its samples are few: 0.11 of it were stated as long as the noise of C counted as information.
+    assert error < 0.2
     assert number(r"well +(\S+)", said) == pytest.approx(-0.238, abs=2 * error)
 
 
