@@ -35,14 +35,25 @@ struct growth_term {
 
 // Distributions -----------------------------------------------------------------------------------
 
+/// The longest bond that is drawn; one that no energy holds, as of a table that ends level, is
+/// twice as long as at rest at most.
+static double longest_of(const struct bonded_curve *curve, double temperature) {
+    const double rest = mf_bonded_rest(curve);
+    const double reach = mf_bonded_reach(curve, highest * temperature);
+    double min, energy;
+    mf_bonded_value(curve, rest, &min, NULL);
+    mf_bonded_value(curve, reach, &energy, NULL);
+    const bool held = energy > min + highest * temperature || reach >= mf_bonded_longest(curve);
+    return held ? reach : 2 * rest;
+}
+
 /// exp(−U/k_B T) times the Jacobian. @param[in] pair  whose Φ acts along the bond, too, or −1
 static void fill_draw(struct growth_draw *draw, const struct growth *growth, int order, int group,
                       int pair) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
     const struct bonded_curve *curve = &growth->molecules->group[order][group].curve;
     const double temperature = fmax(growth->law->temperature, 1e-3);
-    const double high =
-        kind->is_length ? mf_bonded_reach(curve, highest * temperature) : kind->high;
+    const double high = kind->is_length ? longest_of(curve, temperature) : kind->high;
     double *weight = draw->cumulative + 1, min = INFINITY;
     draw->low = kind->is_length ? 0 : kind->low;
     draw->width = (high - draw->low) / PLACES;
