@@ -125,10 +125,15 @@ static enum status try_functions(const struct workspace *w, size_t first, size_t
     enum status status = STATUS_OK;
     const gsl_matrix_const_view c = gsl_matrix_const_submatrix(w->c, first, first, bins, bins);
     const gsl_vector_const_view unit = gsl_vector_const_subvector(w->unit, first, bins);
-    gsl_matrix *half = gsl_matrix_alloc(bins, q->size2);
-    gsl_matrix *projected = gsl_matrix_alloc(q->size2, q->size2);
-    CHECK(half && projected ? STATUS_OK : STATUS_NO_MEMORY);
+    gsl_matrix *half = NULL, *projected = NULL;
     CHECK(fill_functions(&unit.vector, q));
+    if (q->size2 == bins) { // all of C, without two products of bins³
+        *found = estimate(&c.matrix, w->independent);
+        return STATUS_OK;
+    }
+    half = gsl_matrix_alloc(bins, q->size2);
+    projected = gsl_matrix_alloc(q->size2, q->size2);
+    CHECK(half && projected ? STATUS_OK : STATUS_NO_MEMORY);
     project(q, &c.matrix, q, half, projected);
     *found = estimate(projected, w->independent);
 done:

@@ -139,6 +139,8 @@ static void test_interrupted_run_says_so_and_refuses_other_settings(void **state
     assert_contains(result.err, "mesofit: interrupted at step ");
     assert_contains(result.err, "--resume");
     assert_true(temporary_folder_exists("out/checkpoint.bin"));
+    if (temporary_folder_exists("out/summary.json")) // two samples or more
+        results_assert_text("out/summary.json", "status", "interrupted");
     run_program(&result, &how, (const char *const[]){"simulate", "scene.json", "--resume", NULL});
     run_program_assert_code(&result, 130);
     assert_null(strstr(result.err, "T 0.000")); // nothing is known before the first step
