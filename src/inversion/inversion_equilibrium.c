@@ -4,11 +4,16 @@
 #include "base/statistics.h"
 #include "inversion/inversion_state.h"
 
+#include <gsl/gsl_cdf.h>
 #include <math.h>
 #include <stdio.h>
 
 /// Chance with which one of all tests of one look complains of samples in equilibrium.
 static const double false_alarm = 1e-3;
+
+/// Chance with which halves that have forgotten where they began are taken for different: it costs
+/// no more than time.
+static const double apart_alarm = 0.05;
 
 /// Numbers that are tested: sections, and the sums of a sample.
 enum { TESTS = 2, MAX_QUANTITIES = INVERSION_MAX_SECTIONS + SAMPLER_SUMS };
@@ -117,6 +122,66 @@ double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t nu
            noise / count * (1 / times_squared + 1.0 / REPLICAS_BLOCKS);
 }
 
+/// Means of a number of a replica's samples.
+static double mean_of(const struct replicas *replicas, size_t k, size_t number) {
+    double sum = 0;
+    for (int b = 0; b < REPLICAS_BLOCKS; b++)
+        sum += replicas->member[k].block[(size_t)b * replicas->numbers + number];
+    return sum / REPLICAS_BLOCKS;
+}
+
+/// The least chance that the replicas' means of a number differ so between the halves that begin on
+/// both sides, by what they differ within them.
+static double find_chance_of_sides(const struct replicas *replicas, size_t number) {
+    const double count = (double)replicas->count;
+    double contrast[REPLICAS_SIDES] = {0}, freedom = count - 1, largest = 0;
+    struct running_mean all = {0};
+    for (size_t k = 0; k < replicas->count; k++) {
+        const double mean = mean_of(replicas, k, number);
+        mf_statistics_add(&all, mean);
+        for (int side = 0; side < REPLICAS_SIDES; side++)
+            contrast[side] += replicas_side(k, (enum replicas_side)side) * mean / count;
+    }
+    double squares = all.squares, sides = 0;
+    for (int side = 0; side < REPLICAS_SIDES; side++) {
+        if (!replicas->begins[side])
+            continue;
+        const double square = count * contrast[side] * contrast[side];
+        largest = fmax(largest, square);
+        squares -= square;
+        sides++;
+    }
+    freedom -= sides;
+    return squares > 0 ? sides * gsl_cdf_fdist_Q(largest * freedom / squares, 1, freedom) : 1;
+}
+
+/// Whether halves of the replicas differ by where they began, in one of the quantities.
+static bool are_apart(const struct replicas *replicas, const struct quantity *quantity,
+                      size_t quantities) {
+    for (size_t k = 0; k < quantities; k++) {
+        double least = 1, tested = 0;
+        for (size_t n = 0; n < quantity[k].count; n++) {
+            const size_t number = quantity[k].number ? quantity[k].number[n] : quantity[k].first;
+            if (!is_frequent(replicas, number) && quantity[k].number)
+                continue;
+            least = fmin(least, find_chance_of_sides(replicas, number));
+            tested++;
+        }
+        if (tested > 0 && least * tested * (double)quantities < apart_alarm)
+            return true;
+    }
+    return false;
+}
+
+/// Whether there are halves that begin on both sides, of enough replicas.
+static bool has_sides(const struct replicas *replicas) {
+    bool has = false;
+    for (int side = 0; side < REPLICAS_SIDES; side++)
+        has = has || replicas->begins[side];
+    return has && replicas->count >= REPLICAS_MIN_OF_SIDES &&
+           replicas->count % (1 << REPLICAS_SIDES) == 0;
+}
+
 enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
                                            struct inversion_unequilibrated *unequilibrated) {
     struct quantity quantity[MAX_QUANTITIES];
@@ -124,6 +189,8 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
     double min = false_alarm / (double)(TESTS * count);
     const double limit = min;
     unequilibrated->found = unequilibrated->drifts = false;
+    unequilibrated->apart =
+        has_sides(&state->replicas) && are_apart(&state->replicas, quantity, count);
     for (size_t k = 0; k < count; k++) {
         struct stationary is;
         TRY(test(state, &quantity[k], &is));
@@ -141,7 +208,7 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
 
 void mf_inversion_equilibrium_reset(struct inversion_state *state) {
     struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
-    if (!unequilibrated->found)
+    if (!unequilibrated->found || (has_sides(&state->replicas) && !unequilibrated->apart))
         state->work.mixed = true;
     if (state->work.mixed)
         unequilibrated->found = unequilibrated->drifts;

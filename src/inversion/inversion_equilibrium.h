@@ -2,10 +2,16 @@
 /// @file Whether the samples of an inversion are those of equilibrium.
 ///
 /// The energy, the virial, the counts of each section, R_g² and R_e² of molecules are looked at in
-/// the quarters of all replicas' samples (observe/stationary.h). Where one of them drifts or
-/// remembers where it began, the samples are equilibration, and as many are taken again; where they
-/// remember, or drift still, with twice as many sweeps between them. What the samples of one
-/// potential have cost so is where those of the next begin, which may need half of it.
+/// the quarters of all replicas' samples (observe/stationary.h). Where one of them drifts, the
+/// samples are equilibration, and as many are taken again; where it still drifts, with twice as
+/// many sweeps between them. What the samples of one potential have cost so is where those of the
+/// next begin, which may need half of it.
+///
+/// Where one of them remembers where it began, there are too few samples, unless it is chance where
+/// it began: replicas of molecules and mixtures begin on both sides of equilibrium, and as long as
+/// the two halves differ by more than the scatter within them (analysis of variance) the samples
+/// are equilibration. When they do not, each replica is a draw of equilibrium, however slowly it
+/// goes on from there, and the scatter of the replicas is the error of their mean.
 #pragma once
 
 #include "observe/stationary.h"
@@ -21,6 +27,7 @@ enum { INVERSION_QUANTITY_SIZE = 32 };
 struct inversion_unequilibrated {
     bool found;
     bool drifts;                            ///< something does, and not only remembers
+    bool apart;                             ///< halves that began so, by more than their scatter
     char quantity[INVERSION_QUANTITY_SIZE]; ///< in words
     struct stationary is;
     uint64_t sweeps; ///< of each replica since the potential was changed

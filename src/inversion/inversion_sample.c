@@ -173,15 +173,15 @@ static enum status take(struct sampling *sampling, bool again) {
     return STATUS_OK;
 }
 
-/// Samples that drift were equilibration, and are taken again; those that only still
-/// remember their first configurations are too few, and doubled.
+/// Samples that drift, or whose halves are apart, were equilibration, and are taken again; those
+/// that only still remember their first configurations are too few, and doubled.
 static enum status settle(struct sampling *sampling) {
     struct inversion_assessment *assessment = &sampling->state->assessment;
     struct replicas_plan *now = &sampling->plan;
-    const bool drifts = assessment->unequilibrated.drifts;
-    if (!drifts || sampling->failures++ > 0)
+    const bool early = assessment->unequilibrated.drifts || assessment->unequilibrated.apart;
+    if (!early || sampling->failures++ > 0)
         assessment->stretch *= 2;
-    if (!drifts)
+    if (!early)
         return take(sampling, true);
     now->scatter = false;
     now->equilibration = sampling->state->parameters->equilibration * assessment->stretch;

@@ -21,10 +21,11 @@ static bool is_mixture(const struct sampler_system *system) {
 
 /// Beginnings on both sides of equilibrium: half of the replicas with molecules that are stretched,
 /// half with coiled ones, and of mixtures each half with a wave of composition and without.
-static struct placement_bias begin_apart(const struct sampler_system *system, size_t k) {
+static struct placement_bias begin_apart(const struct replicas *replicas, size_t k) {
     static const double stretch = 0.35, tilt = 1.5;
-    return (struct placement_bias){.stretch = k % 2 ? stretch : -stretch,
-                                   .tilt = is_mixture(system) && k / 2 % 2 ? tilt : 0};
+    const bool tilts = replicas->begins[REPLICAS_TILT] && replicas_side(k, REPLICAS_TILT) > 0;
+    return (struct placement_bias){.stretch = stretch * replicas_side(k, REPLICAS_STRETCH),
+                                   .tilt = tilts ? tilt : 0};
 }
 
 enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampler_kind kind,
@@ -32,7 +33,12 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
     enum status status = STATUS_OK;
     const size_t bins = mf_sampler_bins(system), numbers = mf_sampler_numbers(system);
     struct sampler_system own = *system;
-    *replicas = (struct replicas){.bins = bins, .numbers = numbers, .count = count};
+    *replicas = (struct replicas){
+        .bins = bins,
+        .numbers = numbers,
+        .count = count,
+        .begins = {
+            [REPLICAS_STRETCH] = system->molecules != NULL, [REPLICAS_TILT] = is_mixture(system)}};
     CHECK(mf_comoments_init(&replicas->counts, numbers));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
@@ -40,7 +46,7 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
         NEW_ARRAY(replica->block, REPLICAS_BLOCKS * numbers);
         CHECK(mf_comoments_init(&replica->counts, numbers));
         own.seed = mf_rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
-        own.bias = begin_apart(system, k);
+        own.bias = begin_apart(replicas, k);
         CHECK(mf_sampler_init(&replica->sampler, kind, &own));
     }
 done:

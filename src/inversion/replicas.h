@@ -12,8 +12,21 @@ enum { REPLICAS_MAX = 64 };
 /// Consecutive parts of each sampler's samples; their scatter gives the statistical error.
 enum { REPLICAS_BLOCKS = 4 }; // even, so that they can be joined in pairs
 
+/// Ways in which one half of the replicas begins on one side of equilibrium, and the other half on
+/// the other side.
+enum replicas_side {
+    REPLICAS_STRETCH, ///< molecules are coiled, or stretched
+    REPLICAS_TILT,    ///< mixtures begin mixed, or with a wave of composition
+    REPLICAS_SIDES
+};
+
+/// Replicas of which both sides are told apart by their scatter: fewer begin so, too, but are too
+/// few to tell.
+enum { REPLICAS_MIN_OF_SIDES = 8 };
+
 struct replicas {
     size_t bins, numbers, count; ///< numbers of a sample: bins, then sums and integrals
+    bool begins[REPLICAS_SIDES]; ///< on both sides of it
     struct replica {
         struct sampler sampler;
         struct comoments counts; ///< of the samples
@@ -23,6 +36,11 @@ struct replicas {
     } member[REPLICAS_MAX];
     struct comoments counts; ///< of all, as a sample has them
 };
+
+/// On which side replica k begins, 1 or −1.
+static inline double replicas_side(size_t k, enum replicas_side side) {
+    return k >> side & 1 ? 1 : -1;
+}
 
 struct replicas_plan {
     bool scatter;          ///< first: the particles are placed again, without order

@@ -117,6 +117,46 @@ static void test_what_replicas_remember_is_noise_once_they_have_mixed(void **sta
     gsl_rng_free(rng);
 }
 
+/// Replicas that hardly change along their samples: each is 2 from the truth by chance, and on the
+/// side where it began.
+static void make_slow(struct made *made, gsl_rng *rng, double side) {
+    make(made, rng, 0, 0);
+    made->state.replicas.begins[REPLICAS_STRETCH] = made->state.replicas.begins[REPLICAS_TILT] =
+        true;
+    for (size_t k = 0; k < REPLICAS; k++) {
+        const double off = gsl_ran_gaussian(rng, 2) + side * replicas_side(k, REPLICAS_TILT);
+        for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
+            made->block[k][b * NUMBERS + BINS + SAMPLER_WAVES] += off;
+    }
+}
+
+/// Of how many in 500 such samples the halves are apart; what they remember is then no noise.
+static int count_apart(gsl_rng *rng, double side) {
+    static struct made made;
+    struct inversion_unequilibrated *unequilibrated = &made.state.assessment.unequilibrated;
+    int apart = 0;
+    for (int trial = 0; trial < 500; trial++) {
+        make_slow(&made, rng, side);
+        assert_ok(mf_inversion_equilibrium_check(&made.state, unequilibrated));
+        const bool found = unequilibrated->found && !unequilibrated->drifts;
+        mf_inversion_equilibrium_reset(&made.state);
+        if (found)
+            assert_true(unequilibrated->found == unequilibrated->apart);
+        apart += unequilibrated->apart;
+    }
+    return apart;
+}
+
+static void test_replicas_are_draws_of_equilibrium_when_they_forgot_where_they_began(void **state) {
+    (void)state;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    const int alarms = count_apart(rng, 0), far = count_apart(rng, 8);
+    print_message("of 500, apart: %d by chance, %d by four times their scatter\n", alarms, far);
+    assert_in_range(alarms, 1, 25); // 0.05 at most, and many bins that are Sidak's
+    assert_in_range(far, 450, 500);
+    gsl_rng_free(rng);
+}
+
 /// Replicas whose means scatter by 2 about the truth, with blocks of unit variance: the mean of all
 /// is off by sqrt((4 + 1/4)/8). By blocks alone it would be known twice as well.
 static void test_error_of_samples_is_that_of_replicas_that_remember(void **state) {
@@ -280,6 +320,7 @@ int main(void) {
         cmocka_unit_test(test_equilibrium_samples_are_hardly_ever_found_not_to_be),
         cmocka_unit_test(test_what_has_not_settled_is_named),
         cmocka_unit_test(test_what_replicas_remember_is_noise_once_they_have_mixed),
+        cmocka_unit_test(test_replicas_are_draws_of_equilibrium_when_they_forgot_where_they_began),
         cmocka_unit_test(test_error_of_samples_is_that_of_replicas_that_remember),
         cmocka_unit_test(test_shift_is_the_way_along_the_samples_and_the_scatter_of_replicas),
         cmocka_unit_test(
