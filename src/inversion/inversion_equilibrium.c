@@ -15,6 +15,11 @@ static const double false_alarm = 1e-3;
 /// no more than time.
 static const double apart_alarm = 0.05;
 
+/// Ratio of variances of the means of replicas and of their quarters at twice the relaxation time:
+/// in an Ornstein-Uhlenbeck process 3 V(T)/(V(T/4) − V(T)), V(T) = 2 (T − 1 + exp(−T))/T², which is
+/// 12/T where it is large.
+static const double twice_its_memory = 6;
+
 /// Numbers that are tested: sections, and the sums of a sample.
 enum { TESTS = 2, MAX_QUANTITIES = INVERSION_MAX_SECTIONS + SAMPLER_SUMS };
 
@@ -189,6 +194,7 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
     double min = false_alarm / (double)(TESTS * count);
     const double limit = min;
     unequilibrated->found = unequilibrated->drifts = false;
+    unequilibrated->memory = 1;
     unequilibrated->apart =
         has_sides(&state->replicas) && are_apart(&state->replicas, quantity, count);
     for (size_t k = 0; k < count; k++) {
@@ -196,6 +202,8 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
         TRY(test(state, &quantity[k], &is));
         const double chance = stationary_p_value(&is);
         unequilibrated->drifts = unequilibrated->drifts || is.drift < limit;
+        if (is.memory < limit)
+            unequilibrated->memory = fmax(unequilibrated->memory, is.memory_ratio);
         if (!(chance < min))
             continue;
         min = chance;
@@ -208,7 +216,9 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
 
 void mf_inversion_equilibrium_reset(struct inversion_state *state) {
     struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
-    if (!unequilibrated->found || (has_sides(&state->replicas) && !unequilibrated->apart))
+    const bool forgot = has_sides(&state->replicas) && !unequilibrated->apart &&
+                        unequilibrated->memory < twice_its_memory;
+    if (!unequilibrated->found || forgot)
         state->work.mixed = true;
     if (state->work.mixed)
         unequilibrated->found = unequilibrated->drifts;

@@ -26,8 +26,9 @@ enum { INVERSION_QUANTITY_SIZE = 32 };
 /// What had not settled, with the least chance to be so in equilibrium.
 struct inversion_unequilibrated {
     bool found;
-    bool drifts;                            ///< something does, and not only remembers
-    bool apart;                             ///< halves that began so, by more than their scatter
+    bool drifts;   ///< something does, and not only remembers
+    bool apart;    ///< halves that began so, by more than their scatter
+    double memory; ///< the largest ratio of variances of what remembers, observe/stationary.h
     char quantity[INVERSION_QUANTITY_SIZE]; ///< in words
     struct stationary is;
     uint64_t sweeps; ///< of each replica since the potential was changed

@@ -117,43 +117,55 @@ static void test_what_replicas_remember_is_noise_once_they_have_mixed(void **sta
     gsl_rng_free(rng);
 }
 
-/// Replicas that hardly change along their samples: each is 2 from the truth by chance, and on the
-/// side where it began.
-static void make_slow(struct made *made, gsl_rng *rng, double side) {
+/// Replicas that remember for a part of their samples (Ornstein and Uhlenbeck), and began on both
+/// sides of what they have come to.
+static void make_slow(struct made *made, gsl_rng *rng, double time, double side) {
+    enum { STEPS = 64 };
     make(made, rng, 0, 0);
     made->state.replicas.begins[REPLICAS_STRETCH] = made->state.replicas.begins[REPLICAS_TILT] =
         true;
+    const double decay = exp(-1 / (time * REPLICAS_BLOCKS * STEPS));
     for (size_t k = 0; k < REPLICAS; k++) {
-        const double off = gsl_ran_gaussian(rng, 2) + side * replicas_side(k, REPLICAS_TILT);
-        for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
-            made->block[k][b * NUMBERS + BINS + SAMPLER_WAVES] += off;
+        double x = gsl_ran_gaussian(rng, 1);
+        for (size_t b = 0; b < REPLICAS_BLOCKS; b++) {
+            double *mean = &made->block[k][b * NUMBERS + BINS + SAMPLER_WAVES];
+            *mean = side * replicas_side(k, REPLICAS_TILT);
+            for (int step = 0; step < STEPS; step++) {
+                *mean += x / STEPS;
+                x = decay * x + gsl_ran_gaussian(rng, sqrt(1 - decay * decay));
+            }
+        }
     }
 }
 
-/// Of how many in 500 such samples the halves are apart; what they remember is then no noise.
-static int count_apart(gsl_rng *rng, double side) {
+/// How many of 500 such samples are taken as they are.
+static int count_mixed(gsl_rng *rng, double time, double side) {
     static struct made made;
     struct inversion_unequilibrated *unequilibrated = &made.state.assessment.unequilibrated;
-    int apart = 0;
+    int mixed = 0;
     for (int trial = 0; trial < 500; trial++) {
-        make_slow(&made, rng, side);
+        make_slow(&made, rng, time, side);
         assert_ok(mf_inversion_equilibrium_check(&made.state, unequilibrated));
-        const bool found = unequilibrated->found && !unequilibrated->drifts;
         mf_inversion_equilibrium_reset(&made.state);
-        if (found)
-            assert_true(unequilibrated->found == unequilibrated->apart);
-        apart += unequilibrated->apart;
+        mixed += !unequilibrated->found;
     }
-    return apart;
+    return mixed;
 }
 
 static void test_replicas_are_draws_of_equilibrium_when_they_forgot_where_they_began(void **state) {
     (void)state;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
-    const int alarms = count_apart(rng, 0), far = count_apart(rng, 8);
-    print_message("of 500, apart: %d by chance, %d by four times their scatter\n", alarms, far);
-    assert_in_range(alarms, 1, 25); // 0.05 at most, and many bins that are Sidak's
-    assert_in_range(far, 450, 500);
+    static const double times[] = {0.1, 0.25, 0.5, 1, 2, 4};
+    int mixed[6];
+    for (int k = 0; k < 6; k++) {
+        mixed[k] = count_mixed(rng, times[k], 0);
+        print_message("%g of the samples: %d of 500\n", times[k], mixed[k]);
+    }
+    const int apart = count_mixed(rng, 0.25, 2);
+    print_message("but four times their scatter apart: %d\n", apart);
+    assert_true(mixed[0] > 450 && mixed[1] > 430);
+    assert_true(mixed[4] < 60 && mixed[5] < 10);
+    assert_true(apart < 25);
     gsl_rng_free(rng);
 }
 
