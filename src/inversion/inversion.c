@@ -112,6 +112,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
                     progress->iteration + 1 >= inversion->parameters.iterations,
     };
     memcpy(step->noise_of_state, progress->best.noise, sizeof step->noise_of_state);
+    mf_inversion_equilibrium_slowest(inversion->state, &step->slowest);
     show_groups(inversion, step);
     describe_samples(inversion, own, step);
     if (step->finished && !converged)

@@ -187,6 +187,27 @@ static bool has_sides(const struct replicas *replicas) {
            replicas->count % (1 << REPLICAS_SIDES) == 0;
 }
 
+void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
+                                      struct inverse_slowest *slowest) {
+    const struct replicas *replicas = &state->replicas;
+    struct quantity quantity[MAX_QUANTITIES];
+    const size_t count = list(state, quantity);
+    double most = 0;
+    for (size_t k = 0; k < count; k++) {
+        const size_t *number = quantity[k].number ? quantity[k].number : &quantity[k].first;
+        const size_t numbers = quantity[k].count;
+        // Quarters do not see what lasts longer than they do.
+        const double memory =
+            fmax(mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, number, numbers),
+                 mf_replicas_inefficiency(replicas, 1, number, numbers));
+        if (!(memory > most))
+            continue;
+        most = memory;
+        slowest->independent = replicas->counts.count / memory;
+        snprintf(slowest->quantity, sizeof slowest->quantity, "%s", quantity[k].name);
+    }
+}
+
 enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
                                            struct inversion_unequilibrated *unequilibrated) {
     struct quantity quantity[MAX_QUANTITIES];

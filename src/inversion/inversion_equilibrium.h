@@ -15,6 +15,7 @@
 #pragma once
 
 #include "observe/stationary.h"
+#include "problem/inverse.h"
 
 #include <stdint.h>
 
@@ -40,6 +41,11 @@ struct inversion_unequilibrated {
 /// of which may remember its begin, less what the noise of the blocks makes of both: 0 on average
 /// in equilibrium. Tested: test_inversion_equilibrium.
 double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t number);
+
+/// The number that the samples forget most slowly: the g(r) of a pair type, a group, a size, the
+/// energy, the pressure. Tested: test_inversion_equilibrium.
+void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
+                                      struct inverse_slowest *slowest);
 
 /// Test the present samples. One in a thousand samples in equilibrium fails. Fails:
 /// NO_MEMORY. Tested: test_inversion_equilibrium.

@@ -198,6 +198,12 @@ struct inverse_ramp {
     double bins;           ///< out of so many
 };
 
+/// What the samples of an inversion forget most slowly.
+struct inverse_slowest {
+    char quantity[32];  ///< in words; "": not known
+    double independent; ///< samples of it that the last ones are worth
+};
+
 /// Linear response of the pairs S in each bin to the potential, as an inversion samples it: ∂⟨S_a⟩/
 /// ∂Φ_b = −C_ab/k_B T over the known bins of the potential's grid; g = S/S_ideal.
 struct inverse_response {
@@ -225,6 +231,7 @@ struct inverse_step {
     /// none.
     const double *without_ramp;
     struct inverse_ramp ramp;
+    struct inverse_slowest slowest;
     struct inverse_response response;
     const char *formula; ///< of the curve, as a scene's law "expression" has it; NULL: it is none
     struct inverse_parameter

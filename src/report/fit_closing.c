@@ -114,6 +114,18 @@ static void print_pressure(struct progress *to, const struct fit_file *fit,
                       range, mf_units_suffix(units, "k_B T_0/lambda^d", unit));
 }
 
+/// What relaxes so slowly that the samples hold few independent values of it.
+static void print_slowest(struct progress *to, const struct inverse_slowest *slowest) {
+    static const double few = 20;
+    if (slowest->quantity[0] == '\0' || !(slowest->independent < few))
+        return;
+    mf_progress_print(
+        to,
+        "slow: the samples hold %.0f independent values of %s, which the errors allow "
+        "for; more \"samples\" make them smaller",
+        slowest->independent, slowest->quantity);
+}
+
 static void print_friction(struct progress *to, const struct fit_file *fit,
                            const struct unknowns *unknowns, const struct fit_result *result) {
     static const double well = 0.1;
@@ -139,6 +151,7 @@ void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           const char *folder) {
     print_verdict(to, fit, result);
     print_pressure(to, fit, result);
+    print_slowest(to, &result->slowest);
     print_friction(to, fit, unknowns, result);
     if (result->status == STATUS_OK)
         mf_progress_print(to,

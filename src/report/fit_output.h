@@ -19,6 +19,7 @@ struct fit_result {
     double first_error, error;                 ///< of the fit, as its method measured them
     const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
     struct inverse_ramp ramp;                  ///< error 0: not known
+    struct inverse_slowest slowest;
     const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
     const struct inverse_parameter *number;    ///< shape [problem.numbers]
     const char *formula;                       ///< of the curve, or ""

@@ -146,6 +146,14 @@ static void write_ramp(struct json_writer *writer, const struct inverse_ramp *ra
     write_known(writer, "directions_of", ramp->bins);
 }
 
+/// What decides how long the samples had to be.
+static void write_slowest(struct json_writer *writer, const struct inverse_slowest *slowest) {
+    if (slowest->quantity[0] == '\0')
+        return;
+    mf_json_write_text(writer, "slowest", slowest->quantity);
+    mf_json_write_number(writer, "slowest_samples", slowest->independent);
+}
+
 static void write_parameter(struct json_writer *writer, const char *name, const char *unit,
                             const struct inverse_parameter *parameter, bool fixed,
                             const char *bound, bool undetermined) {
@@ -379,6 +387,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
         if (result->curve[kind])
             write_flat(writer, kind, unknowns, result);
     write_ramp(writer, &result->ramp);
+    write_slowest(writer, &result->slowest);
     write_parameters(writer, fit, result);
     write_start(writer, unknowns, result);
     mf_fit_damping_write(result->changes, writer);

@@ -50,6 +50,7 @@ struct run {
         struct fit_accuracy accuracy;
         struct history_time time;
         struct inverse_ramp ramp;
+        struct inverse_slowest slowest;
         struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MAX_NUMBERS];
         char reason[INVERSE_REASON_SIZE];
         char formula[FIELD_TEXT_SIZE]; ///< or ""
@@ -213,6 +214,7 @@ static struct fit_result result_so_far(const struct run *run, enum status status
                                 .seconds = s->time.seconds,
                                 .without_ramp = run->without_ramp,
                                 .ramp = s->ramp,
+                                .slowest = s->slowest,
                                 .settled = s->converged,
                                 .parameter = s->parameter,
                                 .number = s->number,
@@ -265,7 +267,8 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                           .engine_steps = step->engine_steps,
                           .accuracy = {.error = step->error, .variance = step->variance},
                           .time = time_of(run),
-                          .ramp = step->ramp};
+                          .ramp = step->ramp,
+                          .slowest = step->slowest};
     memcpy(run->standing.accuracy.noise, step->noise_of_state, sizeof run->standing.accuracy.noise);
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.number, step->number, sizeof run->standing.number);

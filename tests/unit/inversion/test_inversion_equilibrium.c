@@ -8,6 +8,7 @@
 #include <gsl/gsl_randist.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { REPLICAS = 8, BINS = 12, NUMBERS = BINS + SAMPLER_SUMS };
 
@@ -166,6 +167,30 @@ static void test_replicas_are_draws_of_equilibrium_when_they_forgot_where_they_b
     assert_true(mixed[0] > 450 && mixed[1] > 430);
     assert_true(mixed[4] < 60 && mixed[5] < 10);
     assert_true(apart < 25);
+    gsl_rng_free(rng);
+}
+
+/// One value of each replica is left of what lasts longer than its samples.
+static void test_slowest_number_is_told_with_its_independent_samples(void **state) {
+    (void)state;
+    enum { TRIALS = 200 };
+    static struct made made;
+    struct inverse_slowest slowest;
+    double sum = 0;
+    int named = 0;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (int trial = 0; trial < TRIALS; trial++) {
+        make_slow(&made, rng, 16, 0);
+        made.state.replicas.counts.count = 1000;
+        for (size_t n = 0; n < NUMBERS; n++)
+            made.comoment[n * NUMBERS + n] = 1000;
+        mf_inversion_equilibrium_slowest(&made.state, &slowest);
+        named += strcmp(slowest.quantity, "the longest waves of the types") == 0;
+        sum += 1 / slowest.independent;
+    }
+    print_message("%.2f independent samples, named in %d of %d\n", TRIALS / sum, named, TRIALS);
+    assert_true(named > 0.8 * TRIALS);
+    assert_true(fabs(TRIALS / sum - 8) < 1.5);
     gsl_rng_free(rng);
 }
 
@@ -333,6 +358,7 @@ int main(void) {
         cmocka_unit_test(test_what_has_not_settled_is_named),
         cmocka_unit_test(test_what_replicas_remember_is_noise_once_they_have_mixed),
         cmocka_unit_test(test_replicas_are_draws_of_equilibrium_when_they_forgot_where_they_began),
+        cmocka_unit_test(test_slowest_number_is_told_with_its_independent_samples),
         cmocka_unit_test(test_error_of_samples_is_that_of_replicas_that_remember),
         cmocka_unit_test(test_shift_is_the_way_along_the_samples_and_the_scatter_of_replicas),
         cmocka_unit_test(
