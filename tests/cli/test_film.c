@@ -181,6 +181,22 @@ static void test_bonds_are_drawn_between_beads_that_are_shown(void **state) {
     assert_int_equal(seen_at(0.1, 2), BLUE);
 }
 
+/// One particle, at 0, whose type is −1.
+static const char without_type[] =
+    "<VTKFile header_type=\"UInt64\"><DataArray Name=\"TimeValue\">0</DataArray>"
+    "<DataArray Name=\"box\">5 5 0</DataArray><Piece NumberOfPoints=\"1\">"
+    "<DataArray type=\"Float64\" Name=\"position\" NumberOfComponents=\"3\">"
+    "GAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=</DataArray>"
+    "<DataArray type=\"Int64\" Name=\"type\" NumberOfComponents=\"1\">"
+    "CAAAAAAAAAD//////////w==</DataArray></Piece></VTKFile>";
+
+static void test_types_without_a_number_are_refused(void **state) {
+    struct film_frame frame;
+    temporary_folder_write(*state, "one.vtp", without_type, strlen(without_type));
+    assert_fails(mf_film_frame_read(&frame, "one.vtp", NULL), STATUS_BAD_INPUT,
+                 "one.vtp: a type has no number");
+}
+
 static const struct {
     const char *words[6];
     const char *says[3];
@@ -219,6 +235,7 @@ int main(void) {
         TEST(test_film_has_a_picture_for_each_snapshot),
         TEST(test_ffmpeg_makes_it_a_film),
         TEST(test_bonds_are_drawn_between_beads_that_are_shown),
+        TEST(test_types_without_a_number_are_refused),
         TEST(test_bad_lines_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
