@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A film of a run's snapshots, seen along z: discs of their size in the colours that the program gives
 # them, what is far along z pale.
-# Reads head.gp and frame_N.tsv (x, y, radius, colour) in the folder $MESOFIT_FILM, writes film.gif there;
+# Reads head.gp and frame_N.tsv (x, y, radius, colour; with bonds, in blocks for each layer of depth:
+# corners of halves of bonds, as x, y, colour, and discs) in the folder $MESOFIT_FILM, writes film.gif there;
 # of the run's folder used.json: units and an obstacle.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 folder = system("printf %s \"$MESOFIT_FILM\"")
 load folder . "/head.gp"
 
-# Names of types, in the order of their numbers; a solvent comes last.
-types = !has("configuration.tsv") ? "" : system("awk 'sub(/^# types: /, \"\") { gsub(/[^A-Za-z0-9_ ]/, \"\"); print; exit }' configuration.tsv")
-name_of(k) = 2 * k < words(types) ? word(types, 2 * k + 1) : k > 0 && k == types_shown - 1 ? "solvent" : types_shown == 1 ? "particles" : "others"
 time_unit = has("used.json") && int(system("grep -c '\"units\": *\"' used.json || true")) ? "" : " {/:Italic τ}"
 unit_of_bar = quantity eq "speed" && time_unit ne "" ? " / ({/:Italic λ}/{/:Italic τ})" : ""
 
@@ -22,7 +20,7 @@ obstacle(n) = !has("used.json") ? 0 : real(system(sprintf("awk '/\"obstacle_cent
 inside = Y > X ? 600.0 * X / Y : Y < 0.4 * X ? 1100.0 : 600.0
 scale_of_box = inside / X
 left = 20
-right = scale eq "types" && types_shown == 1 ? 20 : 130
+right = scale eq "types" && words(types) == 0 ? 20 : 130
 top = 40
 bottom = 20
 across = int(inside) + left + right
@@ -41,7 +39,7 @@ set border 15
 unset tics
 unset grid
 if (obstacle(0) > 0) { set object 2 circle at obstacle(1), obstacle(2) size obstacle(0) behind fillstyle solid 1 border rgb ink fillcolor rgb 0xd9d9d9 }
-set key on outside right top vertical Left reverse noautotitle enhanced
+set key on outside right top vertical Left reverse noautotitle
 if (scale eq "types") { unset colorbox } else {
     set colorbox
     set cbrange [least:most]
@@ -51,11 +49,18 @@ if (scale eq "types") { unset colorbox } else {
 }
 # A rim, where there are few enough to see it.
 if (count <= 5000) { set style fill solid 1 border rgb "#ffffff" } else { set style fill solid 1 noborder }
-drawn = scale eq "types" && types_shown > 1 ? types_shown : 0
+# A colour bar's palette would take half of a GIF's colours: where there is no bar there is none.
+bar = scale eq "types" ? "NaN with points linecolor rgb ink" : "NaN with points palette"
+discs = " using 1:2:3:4 with circles linecolor rgb variable"
+halves = " using 1:2:3 with filledcurves closed linecolor rgb variable"
+legend = words(types) == 0 ? "" : ", for [n = 2:words(types):2] NaN with points pointtype 7 pointsize 1.5 " . \
+    "linecolor rgb colour_of(int(word(types, n))) title word(types, n - 1)"
+# Bonds are behind the discs of their layer.
+drawn(n) = n == layers ? "" : sprintf(", frame index %d%s, frame index %d%s", 2 * n, halves, 2 * n + 1, discs) . drawn(n + 1)
 do for [k = 0:frames - 1] {
+    frame = sprintf("%s/frame_%d.tsv", folder, k)
     set title "{/:Italic t} = " . word(times, k + 1) . time_unit . (deep ? "   (pale: far along {/:Italic z})" : "") offset 0, -0.4
-    plot NaN with points palette, \
-        for [n = 1:drawn] NaN with points pointtype 7 pointsize 1.5 linecolor rgb colour_of(n - 1) title name_of(n - 1), \
-        sprintf("%s/frame_%d.tsv", folder, k) using 1:2:3:4 with circles linecolor rgb variable
+    eval "plot " . bar . legend . (layers ? drawn(0) : ", frame" . discs)
+    print k + 1
 }
 unset output

@@ -1,53 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The particles as points of WebGL, turned by mouse, touch and keys.
 import { ask } from "/server.js";
+import { Bonds, meanBond } from "/bonds.js";
+import { Beads, typeColours } from "/shaders.js";
 
 const head = 64, mostTypes = 8, nameSize = 16;
-// Those of figures, by types (plots/style.gp).
-const typeColours = ["#0072b2", "#d55e00", "#009e73", "#aa4499", "#e69f00", "#56b4e9", "#882255", "#7a7a1f"];
-const colours = typeColours.map((hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255));
-
-const vertexProgram = `
-attribute vec3 place; attribute float shade;
-uniform mat3 turn; uniform vec3 box; uniform float scale, aspect, bead, coloured, slice, sliceAt, height;
-uniform vec3 colours[8];
-varying vec3 colour; varying float depth;
-void main() {
-  float largest = max(box.x, max(box.y, box.z));
-  vec3 p = turn * ((place - 0.5 * box) / largest);
-  float z = p.z + 0.9;
-  float near = 1.0 / (2.6 - p.z);
-  gl_Position = vec4(p.x * scale * near * 2.6 / aspect, p.y * scale * near * 2.6, -p.z * 0.3, 1.0);
-  gl_PointSize = max(1.5, bead * scale * height * near / largest);
-  depth = clamp(z / 1.8, 0.0, 1.0);
-  if (box.z > 0.0 && abs(place.z / box.z - sliceAt) > 0.5 * slice) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
-  if (coloured < 0.5) {
-    colour = colours[0];
-    for (int k = 1; k < 8; k++) if (abs(shade - float(k)) < 0.5) colour = colours[k];
-  } else if (coloured < 1.5) {
-    float t = clamp(shade, 0.0, 1.0);
-    colour = vec3(0.15 + 0.85 * t * t, 0.2 + 0.7 * t, 0.9 - 0.7 * t);
-  } else {
-    colour = 0.55 + 0.45 * cos(6.2831853 * (shade + vec3(0.0, 0.33, 0.67)));
-  }
-}`;
-const fragmentProgram = `
-precision mediump float; varying vec3 colour; varying float depth;
-void main() {
-  vec2 p = 2.0 * gl_PointCoord - 1.0; float r = dot(p, p);
-  if (r > 1.0) discard;
-  float light = 0.45 + 0.55 * sqrt(1.0 - r);
-  gl_FragColor = vec4(colour * light * (0.35 + 0.65 * depth), 1.0);
-}`;
-
-function compile(gl, kind, text) {
-  const shader = gl.createShader(kind);
-  gl.shaderSource(shader, text);
-  gl.compileShader(shader);
-  if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS))
-    throw new Error(gl.getShaderInfoLog(shader));
-  return shader;
-}
 
 // The number below which so large a part of them lies, by some hundreds of them.
 function percentile(numbers, part) {
@@ -65,6 +22,8 @@ function parse(buffer) {
   const frame = { count, dimensions: view.getUint32(8, little), types, step: view.getFloat64(24, little), time: view.getFloat64(32, little),
     box: [40, 44, 48].map((k) => view.getFloat32(k, little)), places: take(3 * count), speeds: take(count),
     polarities: parts & 1 ? take(2 * count) : null, energies: parts & 2 ? take(count) : null, hasPotential: (parts & 4) !== 0 };
+  frame.bonds = new Uint32Array(buffer, at, 2 * view.getUint32(20, little));
+  at += frame.bonds.byteLength;
   const text = new TextDecoder();
   frame.names = types.map((_, k) => text.decode(new Uint8Array(buffer, at + nameSize * k, nameSize)).replace(/\0.*/s, ""));
   return frame;
@@ -75,27 +34,17 @@ export class Particles {
     Object.assign(this, { canvas, scene, frames, colours, types, hidden: new Set(), range: "", turn: [1, 0, 0, 0, 1, 0, 0, 0, 1], scale: 1, serial: 0, frame: null, drawn: 0, since: 0, wanted: false });
     this.choice = { colour: "type", slice: 1, sliceAt: 0.5, bead: 1 };
     // Beads are cut out of squares, whose edges are all that smoothing by the browser would see, at four times the work.
-    this.gl = canvas.getContext("webgl", { antialias: false, alpha: false });
+    this.gl = canvas.getContext("webgl2", { antialias: false, alpha: false });
     if (this.gl)
       this.prepare();
     this.listen();
   }
 
   prepare() {
-    const gl = this.gl, program = gl.createProgram();
-    gl.attachShader(program, compile(gl, gl.VERTEX_SHADER, vertexProgram));
-    gl.attachShader(program, compile(gl, gl.FRAGMENT_SHADER, fragmentProgram));
-    gl.linkProgram(program);
-    gl.useProgram(program);
-    const uniforms = new Map();
-    this.uniform = (name) => uniforms.get(name) || uniforms.set(name, gl.getUniformLocation(program, name)).get(name);
-    this.buffers = [["place", 3], ["shade", 1]].map(([name, size]) => {
-      const buffer = gl.createBuffer(), at = gl.getAttribLocation(program, name);
-      gl.enableVertexAttribArray(at);
-      return { buffer, at, size };
-    });
-    gl.enable(gl.DEPTH_TEST);
-    gl.clearColor(0.05, 0.063, 0.078, 1);
+    this.beads = new Beads(this.gl);
+    this.bonds = new Bonds(this.gl);
+    this.gl.enable(this.gl.DEPTH_TEST);
+    this.gl.clearColor(0.05, 0.063, 0.078, 1);
   }
 
   // Ask for frames while they are wanted and seen; a slow browser asks less often.
@@ -208,31 +157,20 @@ export class Particles {
     gl.viewport(0, 0, width, height);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     this.shades = this.shades || this.findShades();
-    [frame.places, this.shades].forEach((data, k) => {
-      const { buffer, at, size } = this.buffers[k];
-      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STREAM_DRAW);
-      gl.vertexAttribPointer(at, size, gl.FLOAT, false, 0, 0);
-    });
-    gl.uniformMatrix3fv(this.uniform("turn"), false, this.turn);
-    gl.uniform3fv(this.uniform("box"), frame.box);
-    gl.uniform3fv(this.uniform("colours"), colours.flat());
-    for (const [name, value] of Object.entries({ scale: (frame.dimensions === 2 ? 1.7 : 1.25) * this.scale, aspect: width / height, bead: this.findBead(), coloured: this.coloured,
-      slice: this.choice.slice >= 1 ? 2 : this.choice.slice, sliceAt: this.choice.sliceAt, height }))
-      gl.uniform1f(this.uniform(name), value);
-    let first = 0; // ids of a type follow each other
-    frame.types.forEach((number, type) => {
-      if (number > 0 && !this.hidden.has(type))
-        gl.drawArrays(gl.POINTS, first, number);
-      first += number;
-    });
+    const view = { turn: this.turn, box: frame.box, scale: (frame.dimensions === 2 ? 1.7 : 1.25) * this.scale, aspect: width / height, bead: this.findBead(), coloured: this.coloured,
+      slice: this.choice.slice >= 1 ? 2 : this.choice.slice, sliceAt: this.choice.sliceAt, height };
+    this.beads.draw(view, frame, this.shades, this.hidden);
+    if (frame.bonds.length > 0)
+      this.bonds.draw(view, frame, this.shades, this.hidden);
     this.countFrame();
   }
 
-  // Beads fill about a quarter of the box, however many there are.
+  // Beads fill about a quarter of the box, however many there are, unless they would hide their bonds.
   findBead() {
-    const { box, count, dimensions } = this.frame, volume = dimensions === 3 ? box[0] * box[1] * box[2] : box[0] * box[1];
-    return this.choice.bead * 0.9 * Math.pow(volume / Math.max(1, count), 1 / dimensions);
+    const { box, count, dimensions, bonds } = this.frame, volume = dimensions === 3 ? box[0] * box[1] * box[2] : box[0] * box[1];
+    if (bonds.length > 0)
+      this.bond ??= meanBond(this.frame);
+    return this.choice.bead * Math.min(0.9 * Math.pow(volume / Math.max(1, count), 1 / dimensions), 0.5 * (this.bond ?? Infinity));
   }
 
   // Told twice a second, and also of a frame after which none comes.
@@ -300,7 +238,7 @@ export class Particles {
 
   clear() {
     this.leave();
-    this.frame = null;
+    this.frame = this.bond = null;
     this.scene.hidden = true;
   }
 }

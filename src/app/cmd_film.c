@@ -6,10 +6,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { COLOUR, FRAMES };
+enum { COLOUR, HIDE, FRAMES };
 
 static const struct command_option options[] = {
     [COLOUR] = {"--colour", "NAME", "type, speed, orientation, stiffness, …"},
+    [HIDE] = {"--hide", "A,..", "leave out these types"},
     [FRAMES] = {"--frames", "N", "at most (300)"},
     {NULL, NULL, NULL},
 };
@@ -32,7 +33,9 @@ static enum status run(const struct command_line *line) {
     TRY(read_frames(line->own[FRAMES], &frames));
     const struct film_options chosen = {
         .colour = line->own[COLOUR],
+        .hide = line->own[HIDE],
         .frames = frames,
+        .quiet = line->options.quiet,
         .force = line->options.force,
     };
     TRY(mf_film_make(line->files[0], &chosen, made));

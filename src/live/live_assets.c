@@ -34,6 +34,8 @@
     EACH(film, "/film.js", "film.js", SCRIPT)                                                      \
     EACH(maps, "/maps.js", "maps.js", SCRIPT)                                                      \
     EACH(particles, "/particles.js", "particles.js", SCRIPT)                                       \
+    EACH(bonds, "/bonds.js", "bonds.js", SCRIPT)                                                   \
+    EACH(shaders, "/shaders.js", "shaders.js", SCRIPT)                                             \
     EACH(settings, "/settings.js", "settings.js", SCRIPT)                                          \
     EACH(files, "/files.js", "files.js", SCRIPT)                                                   \
     EACH(chart, "/chart.js", "chart.min.js", SCRIPT)                                               \

@@ -10,8 +10,7 @@
 
 struct head {
     char name[4];
-    uint32_t count, dimensions, parts, types;
-    uint32_t unused;
+    uint32_t count, dimensions, parts, types, bonds;
     double step, time;
     float box[3];
     char zeros[12];
@@ -30,11 +29,16 @@ static unsigned find_parts(const struct simulation *simulation, bool energies) {
 enum { NAMES_SIZE = COMPOSITION_MAX_TYPES * COMPOSITION_NAME_SIZE };
 _Static_assert(COMPOSITION_NAME_SIZE == 16, "the page reads 16 bytes a name");
 
+static size_t count_bonds(const struct particles *particles) {
+    return particles->topology ? mf_topology_terms(particles->topology, BONDED_BOND) : 0;
+}
+
 static size_t find_size(const struct particles *particles, unsigned parts) {
     const size_t numbers =
         4 + (parts & LIVE_PARTICLES_POLARITY ? 2 : 0) + (parts & LIVE_PARTICLES_ENERGY ? 1 : 0);
     return LIVE_PARTICLES_HEAD + COMPOSITION_MAX_TYPES * sizeof(uint32_t) +
-           particles->count * numbers * sizeof(float) + NAMES_SIZE;
+           particles->count * numbers * sizeof(float) +
+           count_bonds(particles) * 2 * sizeof(uint32_t) + NAMES_SIZE;
 }
 
 static bool reserve(struct live_bytes *bytes, size_t size) {
@@ -61,6 +65,7 @@ static unsigned char *write_head(const struct simulation *simulation, unsigned p
                         .dimensions = (uint32_t)box->dimensions,
                         .parts = parts,
                         .types = (uint32_t)types,
+                        .bonds = (uint32_t)count_bonds(&simulation->particles),
                         .step = (double)simulation->step,
                         .time = (double)simulation->step * simulation->setup.time_step};
     for (int d = 0; d < 3; d++)
@@ -106,6 +111,16 @@ static void write_polarities(const struct particles *particles, float *to) {
             to[2 * (size_t)particles->id[k] + (size_t)d] = (float)orientation.polarity[d][k];
 }
 
+static void write_bonds(const struct topology *topology, uint32_t *to) {
+    for (int k = 0; topology && k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        for (int64_t m = 0; m < kind->count; m++)
+            for (int t = 0; t < kind->terms[BONDED_BOND]; t++)
+                for (int end = 0; end < 2; end++)
+                    *to++ = topology_id(kind, m, kind->term[BONDED_BOND][t].bead[end]);
+    }
+}
+
 static void write_names(const struct composition *composition, unsigned char *to) {
     memset(to, 0, NAMES_SIZE);
     for (int type = 0; type < composition->types; type++)
@@ -128,8 +143,11 @@ void mf_live_particles_write(const struct simulation *simulation, bool energies,
         write_polarities(particles, to);
         to += 2 * particles->count;
     }
-    if (parts & LIVE_PARTICLES_ENERGY)
+    if (parts & LIVE_PARTICLES_ENERGY) {
         mf_reference_energies(simulation->setup.potential, &simulation->setup.composition,
                               particles, &simulation->neighbours, to);
+        to += particles->count;
+    }
+    write_bonds(particles->topology, (uint32_t *)(void *)to);
     write_names(&simulation->setup.composition, bytes->bytes + bytes->size - NAMES_SIZE);
 }

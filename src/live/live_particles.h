@@ -16,13 +16,13 @@ enum { LIVE_PARTICLES_HEAD = 64 };
 
 /// Write a head and then, of all particles by their ids, single-precision numbers in the order of
 /// this machine's bytes:
-///   head: "MFP1"; count, dimensions, parts, types, four words of 32 bits; step and time, doubles;
-///   box, three numbers; and zeros up to LIVE_PARTICLES_HEAD;
+///   head: "MFP1"; count, dimensions, parts, types, bonds, five words of 32 bits; step and time,
+///   doubles; box, three numbers; and zeros up to LIVE_PARTICLES_HEAD;
 ///   counts of the types, COMPOSITION_MAX_TYPES words; places, shape [count, 3] within the box;
 ///   speeds [count], NaN without velocities; with LIVE_PARTICLES_POLARITY polarities [count, 2];
-///   with LIVE_PARTICLES_ENERGY energies [count] of mf_reference_energies [k_B T_0]; at last the
-///   names of the types, COMPOSITION_MAX_TYPES of COMPOSITION_NAME_SIZE bytes, empty in a
-///   one-component system.
+///   with LIVE_PARTICLES_ENERGY energies [count] of mf_reference_energies [k_B T_0]; the ids of
+///   bonded particles, words of shape [bonds, 2]; at last the names of the types,
+///   COMPOSITION_MAX_TYPES of COMPOSITION_NAME_SIZE bytes, empty in a one-component system.
 /// @param[in]     energies  tell them if there is a potential of pairs
 /// @param[in,out] bytes     grows as needed; afterwards of size 0 if there is no memory
 /// Tested: tests/live/test_live.py, by the colours of the page; test_particles.py.

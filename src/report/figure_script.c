@@ -3,7 +3,6 @@
 
 #include "io/input.h"
 #include "io/tracked_files.h"
-#include "report/program.h"
 
 #include <errno.h>
 #include <stdbool.h>
@@ -25,11 +24,12 @@ enum status mf_figure_script_find(char plots[FIGURE_SCRIPT_PATH_SIZE]) {
     return status == STATUS_OK ? status : mf_status_prefix(status, "no figures");
 }
 
-static enum status run_gnuplot(const char *folder, const char *script, double seconds) {
+static enum status run_gnuplot(const char *folder, const char *script, double seconds,
+                               const struct program_ear *ear) {
     // -d: the settings of the user's own gnuplot must not change the figures.
     const char *const words[] = {"gnuplot", "-d", script, NULL};
     char errors[ERRORS_SIZE];
-    return mf_program_run(folder, words, PROGRAM_ERRORS, seconds, errors, sizeof errors);
+    return mf_program_hear(folder, words, PROGRAM_ERRORS, seconds, ear, errors, sizeof errors);
 }
 
 static const char *const kinds[] = {"svg", "png"};
@@ -120,7 +120,7 @@ static enum status draw(const char *folder, const char *plots, const char *scrip
     TRY(report("MESOFIT_TABLE", table));
     TRY(report("MESOFIT_FIGURE", figure));
     TRY(report("MESOFIT_PARTIAL", ending));
-    enum status status = run_gnuplot(folder, file, drawing_time);
+    enum status status = run_gnuplot(folder, file, drawing_time, NULL);
     if (status == STATUS_OK)
         status = check_figure(folder, figure, ending);
     return publish(folder, figure, ending, status);
@@ -135,9 +135,9 @@ enum status mf_figure_script_draw(const char *folder, const char *plots, const c
 }
 
 enum status mf_figure_script_run(const char *folder, const char *plots, const char *script,
-                                 double seconds) {
+                                 double seconds, const struct program_ear *ear) {
     char file[PATH_SIZE + 64];
     snprintf(file, sizeof file, "%s/%s.gp", plots, script);
     TRY(report("MESOFIT_PLOTS", plots));
-    return run_gnuplot(folder, file, seconds);
+    return run_gnuplot(folder, file, seconds, ear);
 }

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 #include "io/output.h"
+#include "report/program.h"
 
 enum { FIGURE_SCRIPT_PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
 
@@ -17,7 +18,8 @@ enum status mf_figure_script_find(char plots[FIGURE_SCRIPT_PATH_SIZE]) MUST_USE;
 enum status mf_figure_script_draw(const char *folder, const char *plots, const char *script,
                                   const char *table, const char *figure) MUST_USE;
 
-/// Run a script that makes files of its own, in `folder`. It is stopped after so many seconds.
+/// Run a script that makes files of its own, in `folder`. It is stopped after so many seconds, and
+/// what it prints is heard.
 /// Fails: IO with one line, NO_MEMORY. Tested: cli/test_film.
 enum status mf_figure_script_run(const char *folder, const char *plots, const char *script,
-                                 double seconds) MUST_USE;
+                                 double seconds, const struct program_ear *ear) MUST_USE;

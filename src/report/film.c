@@ -12,6 +12,7 @@
 #include "report/figure_script.h"
 #include "report/film_paint.h"
 #include "report/program.h"
+#include "report/progress.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -34,7 +35,9 @@ struct film {
     char scratch[256];         ///< folder for files that pass
     char **file;               ///< names of the snapshots shown, in the order of their steps
     int files;
+    struct film_beads beads;
     struct film_paint paint;
+    struct progress progress;
 };
 
 // Which frames -----------------------------------------------------------------------------------
@@ -129,20 +132,40 @@ static enum status write_frame(const struct film *film, int number, FILE *times)
     return status;
 }
 
+/// The types that the legend has, where colours are theirs.
+static void write_types(const struct film *film, FILE *stream) {
+    const struct film_beads *beads = &film->beads;
+    const bool legend = film->paint.scale == FILM_TYPES && beads->types > 1;
+    fprintf(stream, "types = '");
+    for (int type = 0; legend && type < beads->types; type++)
+        if (!beads->hidden[type])
+            fprintf(stream, "%s %d ", beads->name[type], type);
+    fprintf(stream, "'\n");
+}
+
+static size_t count_shown(const struct film *film, const struct film_frame *frame) {
+    size_t count = 0;
+    for (size_t k = 0; k < frame->count; k++)
+        count += !mf_film_beads_hides(&film->beads, frame->type[k]);
+    return count;
+}
+
 static enum status write_head(const struct film *film, FILE *stream) {
     static const char *const scales[] = {"types", "turns", "range"};
+    const struct film_paint *paint = &film->paint;
     char path[PATH_SIZE];
     struct film_frame frame;
     path_of(film, 0, path);
     TRY(mf_film_frame_read(&frame, path, NULL));
-    fprintf(stream, "frames = %d\nscale = \"%s\"\nquantity = \"%s\"\ntypes_shown = %d\n",
-            film->files, scales[film->paint.scale], film->paint.colour, film->paint.types);
-    fprintf(
-        stream,
-        "X = %.10g + 0.0\nY = %.10g + 0.0\ndeep = %d\ncount = %zu.0\nleast = %.6g\nmost = %.6g\n",
-        frame.box[0], frame.box[1], frame.box[2] > 0, frame.count, film->paint.min,
-        film->paint.max);
-    mf_film_paint_palette(&film->paint, stream);
+    fprintf(stream,
+            "frames = %d\nscale = \"%s\"\nquantity = \"%s\"\nX = %.10g + 0.0\n"
+            "Y = %.10g + 0.0\ndeep = %d\ncount = %zu.0\nleast = %.6g\nmost = %.6g\n"
+            "layers = %d\n",
+            film->files, scales[paint->scale], paint->colour, frame.box[0], frame.box[1],
+            frame.box[2] > 0, count_shown(film, &frame), paint->min, paint->max,
+            film->beads.bonds.rows > 0 ? FILM_LAYERS : 0);
+    write_types(film, stream);
+    mf_film_paint_palette(paint, stream);
     mf_film_frame_clear(&frame);
     return STATUS_OK;
 }
@@ -163,12 +186,24 @@ static enum status write_tables(const struct film *film) {
 
 // Programs ---------------------------------------------------------------------------------------
 
-static enum status draw(const struct film *film, const char *folder) {
+/// gnuplot tells the number of each frame that it has drawn, a line each.
+static void hear(void *context, const char *text) {
+    struct film *film = context;
+    const char *line = text + strlen(text);
+    for (int ends = 0; line > text && (ends += line[-1] == '\n') < 2;)
+        line--;
+    const unsigned long drawn = strtoul(line, NULL, 10);
+    if (drawn > 0 && drawn <= (unsigned long)film->files)
+        mf_progress_report(&film->progress, drawn, (uint64_t)film->files, "frames", "film");
+}
+
+static enum status draw(struct film *film, const char *folder) {
+    const struct program_ear ear = {hear, film};
     char plots[FIGURE_SCRIPT_PATH_SIZE];
     TRY(mf_figure_script_find(plots));
     if (setenv("MESOFIT_FILM", film->scratch, 1) != 0)
         return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
-    return mf_figure_script_run(folder, plots, "film", drawing_time);
+    return mf_figure_script_run(folder, plots, "film", drawing_time, &ear);
 }
 
 /// Whether there is a film.mp4: without ffmpeg, or with one that cannot make it, the GIF will do.
@@ -233,13 +268,16 @@ static enum status make(struct film *film, const char *folder, char *made) {
     path_of(film, 0, first);
     path_of(film, film->files / 2, middle);
     path_of(film, film->files - 1, last);
-    TRY(mf_film_paint_choose(&film->paint, (const char *const[]){first, middle, last},
+    TRY(mf_film_beads_read(&film->beads, folder, first, film->options->hide));
+    TRY(mf_film_paint_choose(&film->paint, &film->beads, (const char *const[]){first, middle, last},
                              film->options->colour));
     TRY(write_tables(film));
     TRY(draw(film, folder));
     const char *kind = make_mp4(film) ? "mp4" : "gif";
     TRY(publish(film, folder, kind, made));
     remove_other(folder, kind);
+    mf_progress_print(&film->progress, "%d frames in %.3g s", film->files,
+                      mf_progress_seconds(&film->progress));
     return STATUS_OK;
 }
 
@@ -270,11 +308,12 @@ static void clear(struct film *film) {
         remove(path);
     }
     rmdir(film->scratch);
+    mf_film_beads_clear(&film->beads);
     mf_memory_free(film->file);
 }
 
 enum status mf_film_make(const char *folder, const struct film_options *options, char *made) {
-    struct film film = {.options = options};
+    struct film film = {.options = options, .progress = mf_progress_begin(options->quiet, NULL)};
     struct tracked_files own;
     if (access(folder, X_OK) != 0)
         return mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "report/film_columns.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -50,8 +51,11 @@ static enum status read(struct film_frame *frame, struct film_columns *columns,
     if (frame->position == NULL || frame->type == NULL)
         CHECK(mf_status_fail(STATUS_BAD_INPUT, "%s: no positions or no types", columns->file));
     frame->oriented = turn != NULL;
-    for (size_t k = 0; k < frame->count; k++)
+    for (size_t k = 0; k < frame->count; k++) {
+        if (!(frame->type[k] >= 0 && frame->type[k] <= INT_MAX - 1))
+            CHECK(mf_status_fail(STATUS_BAD_INPUT, "%s: a type has no number", columns->file));
         frame->mixed |= frame->type[k] != frame->type[0];
+    }
 done:
     mf_memory_free(turn);
     return status;

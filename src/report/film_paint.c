@@ -7,11 +7,14 @@
 
 enum {
     SHADES = 24, ///< of a colour bar
-    LAYERS = 6,  ///< of depth
+    DEPTHS = 6,  ///< of depth, each of two layers
 };
 
 /// Of the values of a quantity this share, at each end, may lie beyond the ends of its colours.
 static const double tail = 0.02;
+
+/// Half the width of a bond, in radii of particles.
+static const double half_bond = 0.45;
 
 // Choosing ---------------------------------------------------------------------------------------
 
@@ -28,11 +31,12 @@ static void widen(struct film_paint *paint, struct film_frame *frame) {
     paint->max = fmax(paint->max, frame->colour[frame->count - 1 - skipped]);
 }
 
-/// Particles as large as leaves most of the box free.
-static double size_of(const struct film_frame *frame) {
+/// Particles as large as leaves most of the box free, and their bonds.
+static double size_of(const struct film_beads *beads, const struct film_frame *frame) {
     const int dimensions = frame->box[2] > 0 ? 3 : 2;
     const double volume = frame->box[0] * frame->box[1] * (dimensions == 3 ? frame->box[2] : 1);
-    return 0.35 * pow(volume / (double)frame->count, 1.0 / dimensions);
+    const double size = 0.35 * pow(volume / (double)frame->count, 1.0 / dimensions);
+    return beads->length > 0 ? fmin(size, beads->length / 5) : size;
 }
 
 static enum status choose_quantity(struct film_paint *paint, const char *file, const char *wanted) {
@@ -46,16 +50,14 @@ static enum status choose_quantity(struct film_paint *paint, const char *file, c
     paint->scale = strcmp(colour, "type") == 0          ? FILM_TYPES
                    : strcmp(colour, "orientation") == 0 ? FILM_TURNS
                                                         : FILM_RANGE;
-    paint->size = size_of(&frame);
-    for (size_t k = 0; k < frame.count; k++)
-        paint->types = (int)fmax(paint->types, frame.type[k] + 1);
+    paint->size = size_of(paint->beads, &frame);
     mf_film_frame_clear(&frame);
     return STATUS_OK;
 }
 
-enum status mf_film_paint_choose(struct film_paint *paint, const char *const files[3],
-                                 const char *wanted) {
-    *paint = (struct film_paint){.min = INFINITY, .max = -INFINITY};
+enum status mf_film_paint_choose(struct film_paint *paint, const struct film_beads *beads,
+                                 const char *const files[3], const char *wanted) {
+    *paint = (struct film_paint){.min = INFINITY, .max = -INFINITY, .beads = beads};
     TRY(choose_quantity(paint, files[0], wanted));
     for (int k = 0; k < 3; k++) {
         struct film_frame frame;
@@ -124,7 +126,7 @@ static int colour_of(const struct film_paint *paint, double value) {
 
 /// Of what is behind the rest the colour is a part, the others white.
 static int faded(int colour, int layer) {
-    const double share = (layer + 1.0) / LAYERS;
+    const double share = (layer * DEPTHS / FILM_LAYERS + 1.0) / DEPTHS;
     int result = 0;
     for (int shift = 0; shift <= 16; shift += 8)
         result |= (int)lround(255 - share * (255 - (colour >> shift & 255))) << shift;
@@ -145,25 +147,75 @@ void mf_film_paint_palette(const struct film_paint *paint, FILE *stream) {
 
 // Painting ---------------------------------------------------------------------------------------
 
-static int layer_of(const struct film_frame *frame, size_t k) {
+static int layer_of(const struct film_frame *frame, double z) {
     if (!(frame->box[2] > 0))
-        return LAYERS - 1;
-    const double share = frame->position[3 * k + 2] / frame->box[2];
-    return (int)fmin(fmax(floor(share * LAYERS), 0), LAYERS - 1);
+        return FILM_LAYERS - 1;
+    return (int)fmin(fmax(floor(z / frame->box[2] * FILM_LAYERS), 0), FILM_LAYERS - 1);
+}
+
+static double radius_of(const struct film_paint *paint, const struct film_frame *frame, size_t k) {
+    return frame->radius && frame->radius[k] > 0 ? frame->radius[k] : paint->size;
 }
 
 static void print_particle(const struct film_paint *paint, const struct film_frame *frame, size_t k,
-                           FILE *stream) {
-    const double radius = frame->radius && frame->radius[k] > 0 ? frame->radius[k] : paint->size;
+                           int layer, FILE *stream) {
     fprintf(stream, "%.5g\t%.5g\t%.4g\t%d\n", frame->position[3 * k], frame->position[3 * k + 1],
-            radius, faded(colour_of(paint, frame->colour[k]), layer_of(frame, k)));
+            radius_of(paint, frame, k), faded(colour_of(paint, frame->colour[k]), layer));
 }
 
 /// A solvent, which comes last, lies behind the others of its layer.
+static void print_particles(const struct film_paint *paint, const struct film_frame *frame,
+                            int layer, FILE *stream) {
+    for (size_t k = frame->count; k-- > 0;)
+        if (layer_of(frame, frame->position[3 * k + 2]) == layer &&
+            !mf_film_beads_hides(paint->beads, frame->type[k]))
+            print_particle(paint, frame, k, layer, stream);
+}
+
+/// Four corners: from the rim of a particle to the middle of its bond, `sign` times half the way.
+/// Nothing of a bond that the particle covers, or of another layer.
+static void print_half(const struct film_paint *paint, const struct film_frame *frame, size_t k,
+                       const double way[3], double sign, int layer, FILE *stream) {
+    static const double along[] = {0, 0, 1, 1}, beside[] = {1, -1, -1, 1};
+    const double *from = frame->position + 3 * k;
+    const double seen = hypot(way[0], way[1]), length = hypot(seen, way[2]);
+    const double begin = radius_of(paint, frame, k) / length;
+    if (!(begin < 0.5 && seen > 0) ||
+        layer_of(frame, from[2] + sign * 0.5 * (begin + 0.5) * way[2]) != layer)
+        return;
+    const double half_width = half_bond * paint->size / seen;
+    for (int corner = 0; corner < 4; corner++) {
+        const double part = sign * (begin + along[corner] * (0.5 - begin));
+        const double side = half_width * beside[corner];
+        fprintf(stream, "%.5g\t%.5g\t%d\n", from[0] + part * way[0] - side * way[1],
+                from[1] + part * way[1] + side * way[0],
+                faded(colour_of(paint, frame->colour[k]), layer));
+    }
+    fputc('\n', stream);
+}
+
+static void print_bonds(const struct film_paint *paint, const struct film_frame *frame, int layer,
+                        FILE *stream) {
+    for (size_t n = 0; n < paint->beads->bonds.rows; n++) {
+        size_t bead[2];
+        double way[3];
+        if (!mf_film_beads_bond(paint->beads, n, frame, bead, way) ||
+            mf_film_beads_hides(paint->beads, frame->type[bead[0]]) ||
+            mf_film_beads_hides(paint->beads, frame->type[bead[1]]))
+            continue;
+        print_half(paint, frame, bead[0], way, 1, layer, stream);
+        print_half(paint, frame, bead[1], way, -1, layer, stream);
+    }
+}
+
 void mf_film_paint_frame(const struct film_paint *paint, const struct film_frame *frame,
                          FILE *stream) {
-    for (int layer = 0; layer < LAYERS; layer++)
-        for (size_t k = frame->count; k-- > 0;)
-            if (layer_of(frame, k) == layer)
-                print_particle(paint, frame, k, stream);
+    // A block is not empty, and two blank lines end it.
+    const char *const end = paint->beads->bonds.rows > 0 ? "NaN NaN NaN NaN\n\n\n" : "";
+    for (int layer = 0; layer < FILM_LAYERS; layer++) {
+        print_bonds(paint, frame, layer, stream);
+        fputs(end, stream);
+        print_particles(paint, frame, layer, stream);
+        fputs(end, stream);
+    }
 }

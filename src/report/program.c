@@ -63,7 +63,8 @@ static int time_left(double end) {
 }
 
 /// Read to the end and keep the last size − 1 bytes as a text; false if it does not end in time.
-static bool read_tail(int file, double end, char *text, size_t size) {
+static bool read_tail(int file, double end, const struct program_ear *ear, char *text,
+                      size_t size) {
     char chunk[512];
     size_t used = 0;
     struct pollfd ready = {.fd = file, .events = POLLIN};
@@ -84,6 +85,8 @@ static bool read_tail(int file, double end, char *text, size_t size) {
         memcpy(text + kept, chunk, (size_t)count);
         used = kept + (size_t)count;
         text[used] = '\0';
+        if (ear)
+            ear->hear(ear->context, text);
     }
 }
 
@@ -123,8 +126,9 @@ static enum status assess(const char *name, int state, char *text) {
                           text[0] ? last_line(text) : "no reason");
 }
 
-enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
-                           double seconds, char *text, size_t size) {
+enum status mf_program_hear(const char *folder, const char *const *words, enum program_says says,
+                            double seconds, const struct program_ear *ear, char *text,
+                            size_t size) {
     int ends[2];
     text[0] = '\0';
     char **environment = make_environment();
@@ -143,7 +147,7 @@ enum status mf_program_run(const char *folder, const char *const *words, enum pr
     close(ends[1]);
     int state = -1;
     const bool ended =
-        child > 0 && read_tail(ends[0], end, text, size) && wait_for(child, end, &state);
+        child > 0 && read_tail(ends[0], end, ear, text, size) && wait_for(child, end, &state);
     close(ends[0]);
     if (child < 0)
         return mf_status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(error));
@@ -154,6 +158,11 @@ enum status mf_program_run(const char *folder, const char *const *words, enum pr
                               seconds);
     }
     return assess(words[0], state, text);
+}
+
+enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
+                           double seconds, char *text, size_t size) {
+    return mf_program_hear(folder, words, says, seconds, NULL, text, size);
 }
 
 // Where this program's files are ------------------------------------------------------------------

@@ -22,6 +22,17 @@ enum program_says {
 enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
                            double seconds, char *text, size_t size) MUST_USE;
 
+/// Who hears what a program says, while it runs.
+struct program_ear {
+    void (*hear)(void *context, const char *text); ///< all of it so far, as far as it is kept
+    void *context;
+};
+
+/// The same, heard. @param[in] ear  NULL: nobody hears
+enum status mf_program_hear(const char *folder, const char *const *words, enum program_says says,
+                            double seconds, const struct program_ear *ear, char *text,
+                            size_t size) MUST_USE;
+
 /// Find a folder that ships with this program, such as "plots", by a file that it must have.
 ///
 /// A program that is being built lies one or more folders below the source tree; one that is

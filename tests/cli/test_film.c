@@ -3,6 +3,7 @@
 // `mesofit film`: frames read back from snapshots of both formats, a GIF of all of them, and what
 // ffmpeg makes of it. The ffmpeg here is a script, so that it does not matter whether there is one.
 #include "report/film_frame.h"
+#include "shared/gif.h"
 #include "shared/is_close.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -49,17 +50,10 @@ static void use_ffmpeg(const char *does) {
     setenv("PATH", path, 1);
 }
 
-/// How many pictures a GIF has: each has a block of its time.
 static int pictures(const char *file) {
-    int count = 0, before = 0, now;
-    FILE *stream = fopen(file, "rb");
-    assert_non_null(stream);
-    char head[7] = "";
-    assert_int_equal(fread(head, 1, 6, stream), 6);
-    assert_string_equal(head, "GIF89a");
-    for (int earlier = 0; (now = getc(stream)) != EOF; earlier = before, before = now)
-        count += earlier == 0x21 && before == 0xf9 && now == 4;
-    fclose(stream);
+    struct gif gif = gif_read(file);
+    const int count = gif.pictures;
+    gif_clear(&gif);
     return count;
 }
 
@@ -103,7 +97,7 @@ static void test_film_has_a_picture_for_each_snapshot(void **state) {
     RUN_PROGRAM(&result, "film", "out");
     run_program_assert_code(&result, 0);
     assert_string_equal(result.out, "out/figures/film.gif\n");
-    assert_string_equal(result.err, "");
+    assert_contains(result.err, "5 frames in ");
     assert_int_equal(pictures("out/figures/film.gif"), 5);
     RUN_PROGRAM(&result, "film", "out", "--frames", "2", "--colour", "type");
     assert_int_equal(pictures("out/figures/film.gif"), 2);
@@ -133,6 +127,76 @@ static void test_ffmpeg_makes_it_a_film(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+/// Two beads that are bonded, of two types, and two beside opposite edges, in a box of 10 by 10.
+static const char beads[] =
+    "{\"time\": 1, \"box\": [10, 10], \"particles\": {\"type\": [\"A\", \"A\", \"A\", \"B\"], "
+    "\"x\": [3, 0.5, 9.5, 5], \"y\": [5, 2, 2, 5], \"radius\": [0.2, 0.2, 0.2, 0.2]}}";
+static const char types[] = "# types: A 3 B 1\n# x\ty\n3\t5\n0.5\t2\n9.5\t2\n5\t5\n";
+static const char bonds[] = "# first\tsecond\n1\t4\n2\t3\n1\t900\n";
+
+enum { BLUE = 0x0072b2, RED = 0xd55e00, WHITE = 0xffffff };
+
+/// What is seen there, where the box is 600 pixels wide; of the film of the beads.
+static uint32_t seen_at(double x, double y) {
+    struct gif gif = gif_read("beads/figures/film.gif");
+    const int column = 20 + (int)(60 * x), row = 40 + (int)(60 * (10 - y));
+    assert_true(column < gif.width && row < gif.height);
+    const uint32_t colour = gif.pixel[row * gif.width + column];
+    gif_clear(&gif);
+    return colour;
+}
+
+static void film_beads(const char *const more[2]) {
+    static struct run_program_result result;
+    RUN_PROGRAM(&result, "film", "beads", "--quiet", more[0], more[1]);
+    run_program_assert_code(&result, 0);
+}
+
+/// Types in the colours of figures; each half of a bond has that of its bead, also across an edge
+/// of the box; what is hidden is not there, nor are its bonds.
+static void test_bonds_are_drawn_between_beads_that_are_shown(void **state) {
+    static const char *const none[2] = {NULL, NULL}, *const hide[2] = {"--hide", "B"};
+    small_inputs_need_gnuplot();
+    use_ffmpeg("exit 1");
+    mkdir("beads", 0777);
+    mkdir("beads/snapshots", 0777);
+    temporary_folder_write(*state, "beads/snapshots/step_000000000.json", beads, strlen(beads));
+    temporary_folder_write(*state, "beads/configuration.tsv", types, strlen(types));
+    film_beads(none);
+    assert_int_equal(seen_at(3, 5), BLUE);
+    assert_int_equal(seen_at(5, 5), RED);
+    assert_int_equal(seen_at(3.6, 5), WHITE);
+    temporary_folder_write(*state, "beads/configuration_bonds.tsv", bonds, strlen(bonds));
+    film_beads(none);
+    assert_int_equal(seen_at(3, 5), BLUE);
+    assert_int_equal(seen_at(3.6, 5), BLUE);
+    assert_int_equal(seen_at(4.4, 5), RED);
+    assert_int_equal(seen_at(0.1, 2), BLUE);
+    assert_int_equal(seen_at(9.9, 2), BLUE);
+    assert_int_equal(seen_at(5, 2), WHITE);
+    film_beads(hide);
+    assert_int_equal(seen_at(3, 5), BLUE);
+    assert_int_equal(seen_at(5, 5), WHITE);
+    assert_int_equal(seen_at(3.6, 5), WHITE);
+    assert_int_equal(seen_at(0.1, 2), BLUE);
+}
+
+/// One particle, at 0, whose type is −1.
+static const char without_type[] =
+    "<VTKFile header_type=\"UInt64\"><DataArray Name=\"TimeValue\">0</DataArray>"
+    "<DataArray Name=\"box\">5 5 0</DataArray><Piece NumberOfPoints=\"1\">"
+    "<DataArray type=\"Float64\" Name=\"position\" NumberOfComponents=\"3\">"
+    "GAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=</DataArray>"
+    "<DataArray type=\"Int64\" Name=\"type\" NumberOfComponents=\"1\">"
+    "CAAAAAAAAAD//////////w==</DataArray></Piece></VTKFile>";
+
+static void test_types_without_a_number_are_refused(void **state) {
+    struct film_frame frame;
+    temporary_folder_write(*state, "one.vtp", without_type, strlen(without_type));
+    assert_fails(mf_film_frame_read(&frame, "one.vtp", NULL), STATUS_BAD_INPUT,
+                 "one.vtp: a type has no number");
+}
+
 static const struct {
     const char *words[6];
     const char *says[3];
@@ -142,6 +206,8 @@ static const struct {
     {{"film", "."}, {".: no snapshots to make a film of", "\"formats\": [\"vtp\"]"}},
     {{"film", "out", "--frames", "many"}, {"--frames: expected a number", "\"many\""}},
     {{"film", "out", "--colour", "taste"}, {"have no \"taste\"", "speed"}},
+    {{"film", "out", "--hide", "solvent"}, {"--hide: no type \"solvent\"; there are particles"}},
+    {{"film", "out", "--hide", "particles"}, {"--hide: no type of particles is left"}},
     {{"film", "torn"}, {"torn/snapshots/step_000000000.vtp: parts of it are missing"}},
 };
 
@@ -168,6 +234,8 @@ int main(void) {
         TEST(test_frames_of_both_formats_are_the_same),
         TEST(test_film_has_a_picture_for_each_snapshot),
         TEST(test_ffmpeg_makes_it_a_film),
+        TEST(test_bonds_are_drawn_between_beads_that_are_shown),
+        TEST(test_types_without_a_number_are_refused),
         TEST(test_bad_lines_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

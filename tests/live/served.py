@@ -21,6 +21,16 @@ SCENE = {
     "measure": {"equilibration": 200, "samples": 60, "every": 20},
 }
 
+# Eight dumbbells of two types, whose bonds are long.
+DUMBBELLS = {
+    "seed": 3, "dimensions": 2, "box": [12, 12], "temperature": 0.1, "time_step": 0.01,
+    "bonds": {"long": {"law": "harmonic", "k": 100, "length": 3}},
+    "molecules": {"dumbbell": {"count": 8, "beads": ["A", "B"], "bonds": {"long": [[1, 2]]}}},
+    "conservative": {key: {"law": "soft-repulsion", "a": 25} for key in ("A-A", "A-B", "B-B")},
+    "dissipative": {"law": "power", "sigma": 3},
+    "measure": {"equilibration": 100000, "samples": 10, "every": 10},
+}
+
 
 def water_fit(iterations):
     """Water by inverse Monte Carlo, a little of it."""
@@ -36,7 +46,7 @@ def make_folder(folder):
     """A working folder with a scene, a run file and its target."""
     shutil.copy(os.path.join(SOURCES, "targets", "spc-water", "spc298_rdf_com_1.0nm_100.txt"),
                 os.path.join(folder, "target.txt"))
-    for name, value in (("scene.json", SCENE), ("run.json", water_fit(3))):
+    for name, value in (("scene.json", SCENE), ("dumbbells.json", DUMBBELLS), ("run.json", water_fit(3))):
         with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
             json.dump(value, file, indent=1)
 

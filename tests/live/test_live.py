@@ -140,6 +140,27 @@ class Page(PageTest):
                 done([blue, red]);
             });""", canvas.screenshot_as_base64)
 
+    def test_bonds_are_drawn_unless_an_end_is_left_out(self):
+        """Each half has the colour of its bead: there is much more of it than where the other bead is left out."""
+        self.begin("live", "dumbbells.json", "-o", "bonded", "--stay")
+        self.served.wish(wish="speed", speed=100)
+        self.press("start")
+        self.wait(lambda: "step" in self.text("frames"))
+        self.press("pause")
+        self.wait(lambda: self.phase() == "paused")
+        canvas = self.at("particles")
+        self.browser.execute_script("arguments[0].scrollIntoView({ block: 'center' })", canvas)
+        time.sleep(0.5)
+        self.shoot("bonds")
+        blue, red = self.count_pixels(canvas)
+        self.assertGreater(red, 200)
+        next(e for e in self.at("types").find_elements("tag name", "label") if e.text.strip() == "B").click()
+        self.wait(lambda: self.count_pixels(canvas)[1] == 0)
+        beads = self.count_pixels(canvas)[0]
+        self.assertGreater(beads, 50)
+        self.assertGreater(blue, 1.3 * beads)
+        self.check_console()
+
     def test_temperature_and_time_step_change_while_it_runs(self):
         self.begin("live", "scene.json", "-o", "changed", "--stay")
         self.served.wish(wish="speed", speed=300)

@@ -12,8 +12,8 @@ REPULSION = {key: law["a"] for key, law in SCENE["conservative"].items()}
 
 
 def read(frame):
-    """Parts, box, numbers of the types, places and energies of a frame (live/live_particles.h)."""
-    name, count, _, parts, types = struct.unpack_from("=4s4I", frame)
+    """Parts, box, numbers of the types, places, energies and bonds of a frame (live/live_particles.h)."""
+    name, count, _, parts, types, bonds = struct.unpack_from("=4s5I", frame)
     assert name == b"MFP1"
     box = struct.unpack_from("=3f", frame, 40)
     counts = struct.unpack_from("=8I", frame, HEAD)[:types]
@@ -21,9 +21,12 @@ def read(frame):
     places = struct.unpack_from(f"={3 * count}f", frame, at)
     at += 16 * count + (8 * count if parts & POLARITY else 0)
     energies = struct.unpack_from(f"={count}f", frame, at) if parts & ENERGY else None
+    at += 4 * count if parts & ENERGY else 0
+    bonded = struct.unpack_from(f"={2 * bonds}I", frame, at)
+    assert len(frame) == at + 8 * bonds + 8 * 16
     names = [name.rstrip(b"\0") for name in struct.unpack("16s" * types, frame[-8 * 16:][:16 * types])]
     assert names == [b"A", b"B"], names
-    return parts, box, counts, [places[3 * k:3 * k + 3] for k in range(count)], energies
+    return parts, box, counts, [places[3 * k:3 * k + 3] for k in range(count)], energies, list(zip(bonded[::2], bonded[1::2]))
 
 
 def sum_pairs(box, counts, places):
@@ -44,11 +47,14 @@ def sum_pairs(box, counts, places):
     return energies
 
 
-class Particles(unittest.TestCase):
+class Held(unittest.TestCase):
+    """A run of a scene, paused."""
+    SCENE = "scene.json"
+
     def setUp(self):
         self.place = tempfile.TemporaryDirectory()
         make_folder(self.place.name)
-        self.served = Served(self.place.name, "live", "scene.json", "-o", "out", "--start", "--quiet", "--stay")
+        self.served = Served(self.place.name, "live", self.SCENE, "-o", "out", "--start", "--quiet", "--stay")
         self.served.wish(wish="speed", speed=100)
         time.sleep(0.5)
         self.served.wish(wish="pause")
@@ -68,10 +74,13 @@ class Particles(unittest.TestCase):
     def frame(self, query=""):
         return self.served.ask("/api/particles" + query)[1]
 
+
+class Particles(Held):
     def test_energies_come_for_who_asks_while_the_run_is_held(self):
         first = read(self.wait_for(self.frame))
         self.assertEqual(first[0], POTENTIAL)
         self.assertIsNone(first[4])
+        self.assertEqual(first[5], [])
         asked = self.wait_for(lambda: (lambda got: got if got[0] & ENERGY else None)(read(self.frame("?energies=1"))))
         self.assertEqual(asked[:4], (POTENTIAL | ENERGY, *first[1:4]))
         for told, summed in zip(asked[4], sum_pairs(*asked[1:4])):
@@ -83,6 +92,16 @@ class Particles(unittest.TestCase):
         self.served.wish(wish="step", steps=1)
         self.wait_for(lambda: read(self.frame())[3] != first[3])
         self.assertEqual(read(self.frame())[0], POTENTIAL)
+
+
+class Dumbbells(Held):
+    SCENE = "dumbbells.json"
+
+    def test_bonds_come_with_each_frame(self):
+        bonds = [(k, 8 + k) for k in range(8)]
+        self.assertEqual(read(self.wait_for(self.frame))[5], bonds)
+        asked = self.wait_for(lambda: (lambda got: got if got[0] & ENERGY else None)(read(self.frame("?energies=1"))))
+        self.assertEqual(asked[5], bonds)
 
 
 if __name__ == "__main__":

@@ -52,6 +52,20 @@ static void test_program_run_keeps_the_end_when_there_is_much(void **state) {
     assert_string_equal(text + TEXT_SIZE - 1 - 14, "\n99999\n100000\n");
 }
 
+static void keep(void *context, const char *text) {
+    snprintf(context, TEXT_SIZE, "%s", text);
+}
+
+static void test_program_hear_tells_all_that_is_said(void **state) {
+    char text[TEXT_SIZE], heard[TEXT_SIZE] = "";
+    const char *const words[] = {"sh", "-c", "echo 1; echo 2; echo 3 >&2", NULL};
+    const struct program_ear ear = {keep, heard};
+    (void)state;
+    assert_ok(mf_program_hear("/", words, PROGRAM_EVERYTHING, 0, &ear, text, sizeof text));
+    assert_string_equal(heard, "1\n2\n3\n");
+    assert_string_equal(text, heard);
+}
+
 static void test_program_run_works_in_the_folder_when_given_one(void **state) {
     struct temporary_folder *folder = *state;
     char text[TEXT_SIZE];
@@ -119,6 +133,7 @@ int main(void) {
         cmocka_unit_test(test_program_run_keeps_what_was_asked_for_when_both_streams_speak),
         cmocka_unit_test(test_program_run_has_the_plain_locale_whatever_the_user_speaks),
         cmocka_unit_test(test_program_run_keeps_the_end_when_there_is_much),
+        cmocka_unit_test(test_program_hear_tells_all_that_is_said),
         IN_FOLDER(test_program_run_works_in_the_folder_when_given_one),
         cmocka_unit_test(test_program_run_says_why_when_the_program_fails),
         cmocka_unit_test(test_program_run_stops_what_takes_too_long),
