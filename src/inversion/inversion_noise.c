@@ -26,7 +26,9 @@ static void fill_variances(const struct inversion_state *state, enum inversion_n
                            double *v) {
     const struct potential_grid *grid = &state->grid;
     for (size_t block = 0, a = 0; block < grid->blocks; block++) {
-        const bool own = kind == INVERSION_NOISE_OF_BINS || target_of(state, block)->own_errors;
+        const enum target_errors of = target_of(state, block)->errors_of;
+        const bool own = of == TARGET_ERRORS_OF_BINS ||
+                         (of == TARGET_ERRORS_UNKNOWN && kind == INVERSION_NOISE_OF_BINS);
         for (const size_t end = a + grid->known_of[block]; a < end; a++)
             v[a * grid->known + a] =
                 fmax(0, state->variance[a] - (own ? mf_inversion_target_variance(state, a) : 0));

@@ -7,8 +7,9 @@
 ///
 /// A target gives an error for each bin, and not what they have in common. Mostly it is the mean of
 /// samples, too, of the same liquid: then its noise has the correlations of S (W). A figure's, or a
-/// rounded table's, is each bin's own (V), and so are errors that no file gives
-/// (target.own_errors): W is V then. Steps are made with W, which is the maximum likelihood
+/// rounded table's, is each bin's own (V), and so are errors that no file gives:
+/// W is V then. Where a target says that its errors are of samples (enum target_errors), V is W.
+/// Steps are made with W, which is the maximum likelihood
 /// of samples: minus the logarithm of that is the relative entropy, which is convex in the
 /// potential, and C enters it as such and not as C², so that its noise is not taken for
 /// information. Bands are those of such steps by V, which is the larger noise of what g hardly

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+const char *const mf_targets_errors[] = {"unknown", "samples", "bins", NULL};
+
 const char *mf_targets_name(int kind) {
     const struct observable_kind found = mf_observable_kind(kind);
     return found.observable ? found.target->name : NULL;

@@ -22,6 +22,17 @@ enum target_kind {
 /// Name in run files and tables; NULL beyond the last kind.
 const char *mf_targets_name(int kind);
 
+/// What the errors of a target's values are of.
+enum target_errors {
+    TARGET_ERRORS_UNKNOWN,    ///< a file gives them, and does not say
+    TARGET_ERRORS_OF_SAMPLES, ///< of a simulation: what the values have in common, its samples have
+    TARGET_ERRORS_OF_BINS     ///< of each value by itself: a figure, a rounded table; or no errors
+                              ///< are given, and the scatter of the values tells them
+};
+
+/// Their names in a run file; ends with NULL.
+extern const char *const mf_targets_errors[];
+
 /// Measured values of one observable. Borrowed.
 struct target {
     size_t count;               ///< 0: not asked for
@@ -35,8 +46,7 @@ struct target {
     const size_t *block; ///< of distributions: first values of the blocks that are its features,
                          ///< shape [blocks + 1]; NULL: none
     size_t blocks;
-    bool own_errors; ///< no errors are given: they are of each value by itself, found by the
-                     ///< scatter of the values, or assumed
+    enum target_errors errors_of;
 };
 
 /// Everything that is asked for, and how it was measured.

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "forces/bonded.h"
+#include "problem/targets.h"
 #include "targets/target_rows.h"
 
 #include <math.h>
@@ -32,6 +33,10 @@ const struct field mf_target_bonded_fields[] = {
     {"error_column", FIELD_INTEGER, MEMBER(error_column), .initial = -1, .minimum = -1, COLUMN,
      .help = "column of errors; 0: from the scatter; -1: that named "
              "as the group with \"_error\", or 3, else 0"},
+    {"errors_of", FIELD_CHOICE, MEMBER(errors_of), .choices = mf_targets_errors,
+     .initial = TARGET_ERRORS_UNKNOWN, .unit = "",
+     .help = "samples: of a simulation, so that neighbouring bins scatter together; bins: of each "
+             "bin by itself, as in a figure; unknown: the larger of both"},
     FIELD_END,
 };
 

@@ -16,6 +16,7 @@ struct target_bonded_parameters {
     char file[FIELD_TEXT_SIZE];
     int format;                                   ///< TARGET_ROWS_COLUMNS, TARGET_ROWS_VOTCA
     int64_t q_column, value_column, error_column; ///< as of struct target_curve_parameters
+    int errors_of;                                ///< enum target_errors
 };
 
 extern const struct field mf_target_bonded_fields[];

@@ -166,12 +166,18 @@ static void write(const struct target_files *files, int kind, struct json_writer
     }
 }
 
-/// Whether a file of a group has no errors.
-static bool has_own_errors(const struct target_groups *groups) {
-    bool own = false;
-    for (size_t g = 0; g < groups->groups; g++)
-        own = own || groups->member[g].estimated_error > 0;
-    return own;
+/// What the errors of all groups are of: of bins if a file has none.
+static enum target_errors errors_of(const struct target_groups *groups) {
+    bool samples = true;
+    for (size_t g = 0; g < groups->groups; g++) {
+        const struct target_bonded *member = &groups->member[g];
+        if (member->bins.count == 0)
+            continue;
+        if (member->estimated_error > 0 || member->parameters.errors_of == TARGET_ERRORS_OF_BINS)
+            return TARGET_ERRORS_OF_BINS;
+        samples = samples && member->parameters.errors_of == TARGET_ERRORS_OF_SAMPLES;
+    }
+    return samples ? TARGET_ERRORS_OF_SAMPLES : TARGET_ERRORS_UNKNOWN;
 }
 
 static struct target values(const struct target_files *files, int kind) {
@@ -179,7 +185,7 @@ static struct target values(const struct target_files *files, int kind) {
     return (struct target){.count = groups->first[groups->groups],
                            .value = groups->value,
                            .error = groups->error,
-                           .own_errors = has_own_errors(groups),
+                           .errors_of = errors_of(groups),
                            .block = groups->block,
                            .blocks = groups->blocks};
 }

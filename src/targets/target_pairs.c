@@ -224,13 +224,19 @@ static void write(const struct target_files *files, int kind, struct json_writer
     }
 }
 
-/// Whether a file of a pair type has no errors.
-static bool has_own_errors(const struct target_pairs *target) {
-    bool own = false;
-    for (size_t pair = 0; pair < target->pairs; pair++)
-        own = own || target->member[pair].estimated_error > 0 ||
-              target->member[pair].resampling.error > 0;
-    return own;
+/// What the errors of all pair types are of: of bins if a file has none.
+static enum target_errors errors_of(const struct target_pairs *target) {
+    bool samples = true;
+    for (size_t pair = 0; pair < target->pairs; pair++) {
+        const struct target_rdf *rdf = &target->member[pair];
+        if (rdf->bins.count == 0)
+            continue;
+        if (rdf->estimated_error > 0 || rdf->resampling.error > 0 ||
+            rdf->parameters.errors_of == TARGET_ERRORS_OF_BINS)
+            return TARGET_ERRORS_OF_BINS;
+        samples = samples && rdf->parameters.errors_of == TARGET_ERRORS_OF_SAMPLES;
+    }
+    return samples ? TARGET_ERRORS_OF_SAMPLES : TARGET_ERRORS_UNKNOWN;
 }
 
 static struct target values(const struct target_files *files, int kind) {
@@ -238,7 +244,7 @@ static struct target values(const struct target_files *files, int kind) {
     return (struct target){.count = target_pairs_values(target),
                            .value = target->g,
                            .error = target->error,
-                           .own_errors = has_own_errors(target),
+                           .errors_of = errors_of(target),
                            .factor_error = target->factor_error};
 }
 

@@ -2,6 +2,7 @@
 #include "targets/target_rdf.h"
 
 #include "base/memory.h"
+#include "problem/targets.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,6 +46,10 @@ const struct field mf_target_rdf_fields[] = {
     {"normalisation_error", FIELD_NUMBER, MEMBER(normalisation_error), .initial = 0.01,
      .minimum = FIELD_ABOVE_ZERO, .maximum = 1, .unit = "",
      .help = "prior standard deviation of an estimated normalisation from 1"},
+    {"errors_of", FIELD_CHOICE, MEMBER(errors_of), .choices = mf_targets_errors,
+     .initial = TARGET_ERRORS_UNKNOWN, .unit = "",
+     .help = "samples: of a simulation, so that neighbouring bins scatter together; bins: of each "
+             "bin by itself, as in a figure; unknown: the larger of both"},
     FIELD_END,
 };
 

@@ -16,6 +16,7 @@ struct target_rdf_parameters {
     double bin_width;  ///< of bins that rows are joined to; 0: by itself [λ]
     int64_t particles; ///< of all types where it was measured; 0: as many as the scene has
     double normalisation, normalisation_error; ///< of g; 0: found, with this width about 1
+    int errors_of;                             ///< enum target_errors
 };
 
 extern const struct field mf_target_rdf_fields[];

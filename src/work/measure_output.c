@@ -8,6 +8,7 @@
 #include "mesofit.h"
 #include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
+#include "problem/targets.h"
 #include "work/measure_scene.h"
 #include "work/measure_tables.h"
 
@@ -233,10 +234,15 @@ static enum status write_summary(const struct measure_result *result) {
 
 // target.json -------------------------------------------------------------------------------------
 
+static void write_errors(struct json_writer *writer) {
+    mf_json_write_text(writer, "errors_of", mf_targets_errors[TARGET_ERRORS_OF_SAMPLES]);
+}
+
 static void write_rdf_file(const struct measure_result *result, struct json_writer *writer,
                            const char *file) {
     mf_json_write_text(writer, "file", file);
     mf_json_write_integer(writer, "particles", (int64_t)result->mapping->beads);
+    write_errors(writer);
 }
 
 static void write_rdf(const struct measure_result *result, struct json_writer *writer) {
@@ -301,6 +307,7 @@ static void write_groups(const struct measure_result *result, struct json_writer
         for (int g = 0; g < molecules->groups[order]; g++) {
             mf_json_begin(writer, molecules->group[order][g].name);
             mf_json_write_text(writer, "file", observable->files[0]);
+            write_errors(writer);
             mf_json_end(writer);
         }
         if (molecules->groups[order] > 0)

@@ -233,6 +233,25 @@ static void test_fit_names_demixing_where_the_integrals_say_so(void **state) {
     assert_int_equal(run_program_lines(result.err), 1);
 }
 
+/// Dumbbells that have come apart into a liquid and its vapour: g stays above 1 up to the box.
+static void test_fit_warns_of_dumbbells_of_two_phases(void **state) {
+    static struct run_program_result result;
+    (void)state;
+    link_to("runs/standard-set/dumbbells/rdf.tsv", "rdf.tsv");
+    link_to("runs/standard-set/dumbbells/bond_lengths.tsv", "bond_lengths.tsv");
+    link_to("runs/standard-set/dumbbells/run.json", "run.json");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "and g ends at 1.022: of two phases, or near a critical point?");
+    assert_int_equal(unlink("run.json"), 0);
+    assert_int_equal(unlink("rdf.tsv"), 0);
+    link_to("runs/standard-set/lennard-jones-critical/rdf.tsv", "rdf.tsv");
+    link_to("runs/standard-set/lennard-jones-critical/run.json", "run.json");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.out, "two phases"));
+}
+
 /// 32.57 molecules in a cubic nanometre and 0.974 g/cm³, as the target's own head says; the first
 /// peak of its README.
 static const char line[] =
@@ -430,6 +449,7 @@ int main(void) {
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_names_demixing_where_the_integrals_say_so),
+        TEST(test_fit_warns_of_dumbbells_of_two_phases),
         TEST(test_fit_warns_of_dihedrals_about_angles_in_a_line),
         TEST(test_fit_of_molecules_warns_of_g_that_ends_beside_1),
         TEST(test_fit_tells_its_target_in_a_line_unless_quiet),
