@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// docs/files.md names every table that runs leave, every column and every key of
+// docs/results.md names every table that runs leave, every column and every key of
 // summary.json.
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -54,7 +54,7 @@ static void assert_reported(const char *what, const char *file) {
     char word[512];
     snprintf(word, sizeof word, "`%s`", what);
     if (strstr(doc, word) == NULL)
-        fail_msg("docs/files.md does not tell of %s in %s", word, file);
+        fail_msg("docs/results.md does not tell of %s in %s", word, file);
 }
 
 /// Keys of an indented JSON text.
@@ -111,7 +111,7 @@ static void check_folder(const char *folder) {
 static void test_doc_tells_of_all_that_runs_leave(void **state) {
     static struct run_program_result result;
     char path[1024];
-    snprintf(path, sizeof path, "%s/docs/files.md", run_program_sources());
+    snprintf(path, sizeof path, "%s/docs/results.md", run_program_sources());
     doc = temporary_folder_read(path);
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "scene", "--quiet");
