@@ -299,7 +299,7 @@ static void print_body(FILE *stream, const struct look *look, const struct topic
 void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_t count) {
     fprintf(stream, "# Reference\n\nBy `make docs`; also the man page `mesofit(1)`. `mesofit "
                     "describe TOPIC` has all keys of a section.\nFiles that runs write are in "
-                    "[files.md](files.md#results).\n");
+                    "[results.md](results.md).\n");
     print_body(stream, &markdown, topics, count);
 }
 

@@ -157,7 +157,7 @@ static void test_kirkwood_buff_waves_of_molecules_are_those_of_their_sites(void 
     mf_topology_clear(&topology);
 }
 
-/// A few of Kremer and Grest's chains of 50 beads, R_g² = 13.7 at density 0.85 (docs/simulate.md),
+/// A few of Kremer and Grest's chains of 50 beads, R_g² = 13.7 at density 0.85 (lab/molecules.md),
 /// among single beads: the mean distance of sites is that of beads, but the waves stay longer than
 /// a chain. Those of dimers are as without the bond.
 static void test_kirkwood_buff_waves_are_longer_than_the_molecules(void **state) {
