@@ -244,11 +244,9 @@ static void keep_curves(struct run *run, const struct inverse_step *step) {
         for (size_t k = 0; k < INVERSE_FLAT * points; k++)
             run->curve_flat[kind][k] = step->curve_flat[kind] ? step->curve_flat[kind][k] : NAN;
     }
+    const double *without = step->without_ramp, *error = run->curve_error[UNKNOWN_POTENTIAL];
     for (size_t k = 0; k < mf_unknowns_points(&run->unknowns, UNKNOWN_POTENTIAL); k++)
-        run->without_ramp[k] =
-            step->without_ramp && isfinite(run->curve_error[UNKNOWN_POTENTIAL][k])
-                ? step->without_ramp[k]
-                : NAN;
+        run->without_ramp[k] = without && isfinite(error[k]) ? without[k] : NAN;
 }
 
 static void own_file(void *context, const char *name, char *path) {
