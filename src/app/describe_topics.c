@@ -5,6 +5,7 @@
 
 #include "defaults/fit_file.h"
 #include "defaults/fit_friction.h"
+#include "defaults/methods.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"
 #include "observe/rdf_observable.h"
@@ -228,9 +229,8 @@ static const struct {
 };
 
 static const struct field *find_shared(const char *name) {
-    for (size_t k = 0; mf_inverse_methods[k]; k++)
-        for (const struct inverse_table *table = mf_inverse_methods[k]->tables; table->fields;
-             table++)
+    for (size_t k = 0; mf_methods[k]; k++)
+        for (const struct inverse_table *table = mf_methods[k]->tables; table->fields; table++)
             if (table->shared && strcmp(table->shared, name) == 0)
                 return table->fields;
     return NULL;
@@ -278,8 +278,8 @@ size_t mf_describe_topics(struct topic topics[DESCRIBE_MAX_TOPICS]) {
                                      mf_integrator_list[k]->summary,
                                      {mf_integrator_list[k]->fields}};
     n = add_shared(topics, n);
-    for (size_t k = 0; mf_inverse_methods[k]; k++) {
-        const struct inverse_method *method = mf_inverse_methods[k];
+    for (size_t k = 0; mf_methods[k]; k++) {
+        const struct inverse_method *method = mf_methods[k];
         topics[n] = (struct topic){"method", method->name, method->summary, {NULL}};
         for (size_t t = 0; t + 1 < DESCRIBE_MAX_TABLES && method->tables[t].fields; t++)
             topics[n].tables[t] = method->tables[t].fields;

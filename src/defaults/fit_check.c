@@ -2,6 +2,7 @@
 #include "defaults/fit_check.h"
 
 #include "defaults/fit_densities.h"
+#include "matching/matchings.h"
 #include "targets/target_sanity.h"
 #include "io/units_scale.h"
 #include "observe/kirkwood_buff_observable.h"

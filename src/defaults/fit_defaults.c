@@ -3,6 +3,7 @@
 
 #include "defaults/fit_choice.h"
 #include "defaults/fit_friction.h"
+#include "inversion/inversions.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,6 +3,7 @@
 // How long, how exactly and by what method a fit works that its run file leaves to the program.
 #include "dynamics/hybrid_step.h"
 #include "defaults/fit_choice.h"
+#include "defaults/methods.h"
 #include "inversion/inversion.h"
 
 #include <math.h>

@@ -11,6 +11,7 @@
 #include "defaults/fit_friction.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
+#include "defaults/methods.h"
 
 #include <math.h>
 #include <string.h>
@@ -87,12 +88,12 @@ static enum status read_method(struct fit_file *fit, struct json_object *root, b
     if (mf_json_refuse_choice(&object, "name", "joint-imc",
                               "write \"imc\", which fits one state or several"))
         return STATUS_OK;
-    TRY(mf_names_collect(mf_inverse_methods, NULL, &names));
+    TRY(mf_names_collect(mf_methods, NULL, &names));
     const char *name = mf_json_choice(&object, "name", names, NULL);
     mf_memory_free(names);
     if (name == NULL)
         return STATUS_OK;
-    fit->method = mf_names_find(mf_inverse_methods, name);
+    fit->method = mf_names_find(mf_methods, name);
     fit->method_parameters = mf_memory_zeroed(1, fit->method->parameters_size);
     if (fit->method_parameters == NULL)
         return STATUS_NO_MEMORY;

@@ -11,6 +11,7 @@
 #include "inversion/inversion_low_rank.h"
 #include "inversion/inversion.h"
 #include "inversion/inversion_intramolecular.h"
+#include "inversion/inversions.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>

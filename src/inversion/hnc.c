@@ -10,6 +10,7 @@
 #include "inversion/hnc_closure.h"
 #include "inversion/inversion.h"
 #include "inversion/inversion_intramolecular.h"
+#include "inversion/inversions.h"
 #include "inversion/method_steps.h"
 
 /// Structure factors below this are not trusted.

@@ -3,6 +3,7 @@
 // Iterative Boltzmann inversion. D. Reith, M. Pütz and F. Müller-Plathe, J. Comput. Chem. 24, 1624
 // (2003).
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>

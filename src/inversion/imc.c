@@ -4,6 +4,7 @@
 #include "inversion/imc_solve.h"
 #include "inversion/inversion_low_rank.h"
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>

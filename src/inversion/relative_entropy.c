@@ -6,6 +6,7 @@
 #include "inversion/relative_entropy.h"
 
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "inversion/method_steps.h"
 
 #include <math.h>

@@ -8,6 +8,8 @@
 // g(r) hardly sees it, farther than a linear response reaches: so the best one takes the place of
 // the curve, with the differences of g(r) that its simulation shows, and the next cycle begins.
 #include "formulas_state.h"
+#include "inversion/inversions.h"
+#include "matching/matchings.h"
 #include "observe/kirkwood_buff_observable.h"
 
 #include <assert.h>

@@ -9,6 +9,7 @@
 
 #include "base/memory.h"
 #include "base/rng.h"
+#include "matching/matchings.h"
 #include "matching/population.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "matching/individuals.h"
+#include "matching/matchings.h"
 #include "matching/population.h"
 #include "problem/parametrisation.h"
 #include "optimise/genetic.h"

@@ -6,6 +6,7 @@
 #include "pareto_state.h"
 
 #include "base/memory.h"
+#include "matching/matchings.h"
 
 #include <assert.h>
 #include <math.h>

@@ -7,6 +7,8 @@
 // integrals of g alone; then it is held, and
 // `gauss-newton` finds ω from what moves.
 #include "matching/population.h"
+#include "inversion/inversions.h"
+#include "matching/matchings.h"
 #include "observe/kirkwood_buff_observable.h"
 
 #include <assert.h>

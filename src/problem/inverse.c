@@ -106,10 +106,6 @@ int mf_inverse_free_parameters(const double fixed[INVERSE_PARAMETERS]) {
     return count;
 }
 
-#define INVERSE_LIST(name) &mf_##name,
-#define INVERSE_LIST_MATCHING(record, name, summary) &mf_matching_##record,
-const struct inverse_method *const mf_inverse_methods[] = {INVERSE_METHODS(INVERSE_LIST) NULL};
-
 /// An error that has fallen in this last part of the iterations still falls.
 static const double recent = 0.25;
 

@@ -350,26 +350,3 @@ struct inverse_method {
     /// Write its own tables after an iteration, or NULL. Fails: IO, NO_MEMORY.
     enum status (*write)(const void *state, const struct inverse_folder *folder);
 };
-
-/// All methods: inversions, those that drive an optimiser, and those that take steps of their own.
-#define INVERSE_METHODS(EACH)                                                                      \
-    EACH(automatic)                                                                                \
-    EACH(imc)                                                                                      \
-    EACH(ibi)                                                                                      \
-    EACH(hnc)                                                                                      \
-    EACH(relative_entropy)                                                                         \
-    OPTIMISERS(EACH##_MATCHING)                                                                    \
-    EACH(gauss_newton)                                                                             \
-    EACH(pareto)                                                                                   \
-    EACH(formulas)                                                                                 \
-    EACH(successive)
-
-#define INVERSE_DECLARE(name) extern const struct inverse_method mf_##name;
-#define INVERSE_DECLARE_MATCHING(record, name, summary)                                            \
-    extern const struct inverse_method mf_matching_##record;
-INVERSE_METHODS(INVERSE_DECLARE)
-#undef INVERSE_DECLARE
-#undef INVERSE_DECLARE_MATCHING
-
-/// The same, NULL-terminated.
-extern const struct inverse_method *const mf_inverse_methods[];

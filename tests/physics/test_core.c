@@ -7,6 +7,7 @@
 #include "base/statistics.h"
 #include "curves/formula.h"
 #include "dynamics/metropolis.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/inversions.h"
 #include "shared/length.h"

@@ -4,6 +4,7 @@
 // own g(r), but for the direction that g(r) hardly sees: the ramp A (1 − r/r_c).
 #include "curves/formula.h"
 #include "dynamics/metropolis.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/inversions.h"
 #include "shared/is_close.h"

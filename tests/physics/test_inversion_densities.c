@@ -4,6 +4,7 @@
 // f; and what f and the potential of pairs share moves neither.
 #include "curves/formula.h"
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/length.h"

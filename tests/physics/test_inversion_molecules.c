@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "curves/formula.h"
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "inversion/relative_entropy.h"
 #include "problem/verify.h"
 #include "shared/fluids.h"

@@ -4,6 +4,7 @@
 #include "curves/formula.h"
 #include "curves/sampled.h"
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/length.h"

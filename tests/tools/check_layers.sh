@@ -1,28 +1,32 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# check_layers.sh: every include "layer/…" follows src/layers.txt, and each foreign library or
-# program is known to one file only. Run at the root of the source tree.
+# check_layers.sh BUILD: every include "layer/…" follows src/layers.txt, and so does every symbol that
+# an object of BUILD uses, since a list may declare what it lists; each foreign library or program is
+# known to one file only. Run at the root of the source tree.
 set -u
 export LC_ALL=C.UTF-8
 
+# Which room may use which, for awk: known[room], allowed[room, other].
+rules='
+    BEGIN {
+        while ((getline line < "src/layers.txt") > 0) {
+            if (line ~ /^#/ || line !~ /:/)
+                continue
+            layer = line
+            sub(/:.*/, "", layer)
+            sub(/^[^:]*:/, "", line)
+            known[layer] = 1
+            allowed[layer, layer] = 1
+            count = split(line, uses, " ")
+            for (i = 1; i <= count; i++)
+                allowed[layer, uses[i]] = 1
+        }
+    }'
+
 # Prints "file:line: layer may not include other" for each include that breaks a rule.
 includes_against_the_rules() {
-    find src -mindepth 2 -type f -name '*.[ch]' -exec awk '
-        BEGIN {
-            while ((getline line < "src/layers.txt") > 0) {
-                if (line ~ /^#/ || line !~ /:/)
-                    continue
-                layer = line
-                sub(/:.*/, "", layer)
-                sub(/^[^:]*:/, "", line)
-                known[layer] = 1
-                allowed[layer, layer] = 1
-                count = split(line, uses, " ")
-                for (i = 1; i <= count; i++)
-                    allowed[layer, uses[i]] = 1
-            }
-        }
+    find src -mindepth 2 -type f -name '*.[ch]' -exec awk "$rules"'
         FNR == 1 {
             split(FILENAME, parts, "/")
             layer = parts[2]
@@ -40,6 +44,32 @@ includes_against_the_rules() {
         }' {} +
 }
 
+# Prints "file: layer may not use symbol of file" for each symbol of the program that breaks a rule.
+symbols_against_the_rules() {
+    find src -mindepth 2 -type f -name '*.c' | while IFS= read -r file; do
+        object=$1/${file%.c}.o
+        [ ! -e "$object" ] || echo "$object"
+    done | xargs nm --extern-only --format=posix -A | awk -v build="$1/" "$rules"'
+        {
+            file = substr($1, length(build) + 1)
+            sub(/:$/, "", file)
+            split(file, parts, "/")
+            if ($3 == "U") {
+                user[++uses_made] = file
+                symbol[uses_made] = $2
+                from[uses_made] = parts[2]
+            } else {
+                home[$2] = file
+                room[$2] = parts[2]
+            }
+        }
+        END {
+            for (n = 1; n <= uses_made; n++)
+                if (symbol[n] in home && !((from[n], room[symbol[n]]) in allowed))
+                    print user[n] ": " from[n] " may not use " symbol[n] " of " home[symbol[n]]
+        }'
+}
+
 # only_in FILE PATTERN WHAT: prints the lines of other files that match the extended regex.
 only_in() {
     grep -rnE --include='*.[ch]' "$2" src | grep -v "^$1:" |
@@ -48,6 +78,7 @@ only_in() {
 
 faults=$(
     includes_against_the_rules
+    symbols_against_the_rules "$1"
     only_in 'src/io/json[_a-z]*.c' 'include.*cJSON\.h' 'cJSON'
     only_in src/io/xml.c 'include.*expat\.h' 'expat'
     only_in src/base/ranks.c 'include.*mpi\.h' 'MPI'

@@ -87,7 +87,7 @@ check_lengths() {
 failed=0
 report format "$(check_format)"
 report cppcheck "$(check_cppcheck)"
-tests/tools/check_layers.sh || failed=1
+tests/tools/check_layers.sh "$(dirname "$library")" || failed=1
 tests/tools/check_names.sh $libraries || failed=1
 tests/tools/check_docs.sh || failed=1
 report licence "$(check_licence_lines)"

@@ -2,6 +2,8 @@
 #include "defaults/fit_defaults.h"
 
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
+#include "matching/matchings.h"
 #include "matching/population.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"

@@ -4,6 +4,7 @@
 // type and of several, and of molecules whose structure is not known they are Boltzmann
 // inversion's.
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "inversion/method_steps.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"

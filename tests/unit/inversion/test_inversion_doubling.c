@@ -3,6 +3,7 @@
 // What an iteration tells while it doubles its samples, on the ideal gas that meets its target: all
 // that is off is noise, which each doubling makes sqrt(2) times smaller.
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/testing.h"
 

@@ -2,6 +2,7 @@
 //
 // What has not settled of samples that are made up.
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/testing.h"
 

@@ -4,6 +4,7 @@
 // factor makes them, and dimers of two types, which g of the types cannot distinguish at small q.
 #include "inversion/inversion.h"
 #include "inversion/inversion_intramolecular.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/molecules.h"

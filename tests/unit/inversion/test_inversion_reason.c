@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
+#include "inversion/inversions.h"
 #include "shared/testing.h"
 
 #include <math.h>

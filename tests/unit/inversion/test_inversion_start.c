@@ -2,6 +2,7 @@
 #include "base/rng.h"
 #include "curves/formula.h"
 #include "inversion/inversion.h"
+#include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
