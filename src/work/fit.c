@@ -366,8 +366,10 @@ static enum status verify_and_write(struct run *run) {
     enum status status = STATUS_OK;
     NEW_ARRAY(verification, states);
     mf_task_log_use(&run->checkpoint.tasks);
-    status =
-        mf_fit_verify_states(&run->fit, run->curve, run->standing.number, &listener, verification);
+    const bool agreed = run->standing.converged && run->fit.method->kind == INVERSE_INVERSION;
+    status = mf_fit_verify_states(&run->fit, run->curve, run->standing.number,
+                                  agreed ? &run->standing.accuracy : NULL, &run->progress,
+                                  &listener, verification);
     mf_task_log_use(NULL);
     if (status == STATUS_UNSTABLE)
         status = write_unstable(run);

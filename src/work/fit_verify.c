@@ -76,12 +76,25 @@ static size_t sampled_particles(const struct fit_file *fit) {
     return (size_t)count;
 }
 
-static enum status verify_state(const struct fit_file *state, double *const *curve,
+/// Equilibrations of so many times the steps of a whole verification before.
+enum { AGAIN = 4 };
+
+/// The steps of a verification of a state, in the first round or the next.
+static struct verify_parameters plan_of(const struct fit_file *state, int round) {
+    struct verify_parameters parameters = state->verification;
+    if (round > 0)
+        parameters.plan.equilibration = AGAIN * (parameters.plan.equilibration +
+                                                 parameters.plan.samples * parameters.plan.every);
+    return parameters;
+}
+
+static enum status verify_state(const struct fit_file *state, int round, double *const *curve,
                                 const struct inverse_parameter *number,
                                 const struct inverse_listener *listener,
                                 struct verification *verification) {
     struct unknowns unknowns = {0};
     struct unknowns_laws laws = {0};
+    const struct verify_parameters parameters = plan_of(state, round);
     double value[INVERSE_MAX_NUMBERS];
     enum status status = STATUS_OK;
     for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
@@ -89,7 +102,7 @@ static enum status verify_state(const struct fit_file *state, double *const *cur
     CHECK(mf_unknowns_init(&unknowns, &state->problem));
     CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)curve, value, &laws));
     status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
-                       &state->verification, listener, verification);
+                       &parameters, listener, verification);
     CHECK(advise(state, &verification->step, status));
     verification->sampled = sampled_particles(state);
     mf_fit_verification_add_units(&state->scene.units, verification);
@@ -104,12 +117,11 @@ static uint64_t samples_of(const struct fit_file *state) {
     return (uint64_t)(verification->replicas * verification->plan.samples);
 }
 
-enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
-                                 const struct inverse_parameter *number,
-                                 const struct inverse_listener *listener,
-                                 struct verification *verification) {
+static enum status verify_round(struct fit_file *fit, int round, double *const *curve,
+                                const struct inverse_parameter *number,
+                                const struct inverse_listener *listener,
+                                struct verification *verification) {
     const size_t states = mf_fit_states_count(fit);
-    const double begun = clock_process_seconds();
     struct sharing sharing = {.listener = listener};
     const struct inverse_listener of_state = {report_of_state, &sharing};
     for (size_t s = 0; s < states; s++)
@@ -117,10 +129,9 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
     for (size_t s = 0; s < states; s++) {
         const struct fit_file *state = mf_fit_states_at(fit, s);
         sharing.after -= samples_of(state);
-        TRY(verify_state(state, curve, number, &of_state, &verification[s]));
+        TRY(verify_state(state, round, curve, number, &of_state, &verification[s]));
         sharing.before += sharing.here;
     }
-    mf_spent_add(SPENT_VERIFICATION, clock_process_seconds() - begun);
     return STATUS_OK;
 }
 
@@ -165,6 +176,27 @@ bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verifica
         return true;
     }
     return false;
+}
+
+enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
+                                 const struct inverse_parameter *number,
+                                 const struct fit_accuracy *of_fit, struct progress *progress,
+                                 const struct inverse_listener *listener,
+                                 struct verification *verification) {
+    const double begun = clock_process_seconds();
+    char reason[INVERSE_REASON_SIZE];
+    TRY(verify_round(fit, 0, curve, number, listener, verification));
+    if (of_fit && mf_fit_verify_contradicts(fit, verification, of_fit, reason)) {
+        mf_progress_print(progress,
+                          "the verification differs from the fit's samples, and begins "
+                          "again with %d times as many steps before its samples",
+                          AGAIN);
+        for (size_t s = 0; s < mf_fit_states_count(fit); s++)
+            mf_verify_clear(&verification[s]);
+        TRY(verify_round(fit, 1, curve, number, listener, verification));
+    }
+    mf_spent_add(SPENT_VERIFICATION, clock_process_seconds() - begun);
+    return STATUS_OK;
 }
 
 enum status mf_fit_verify_write(const struct fit_file *fit, size_t s,

@@ -250,6 +250,23 @@ static void test_nlopt_has_converged_when_its_steps_are_short(void **state) {
     assert_summary("converged", NULL);
 }
 
+/// From a lattice, and with samples at once, a verification is still on its way: it begins again
+/// after four times its steps.
+static void test_verification_that_is_on_its_way_begins_again(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", soft_fluid, NULL, NULL);
+    twins_simulate("scene.json", "target");
+    small_inputs_write(*state, "run.json", fit, "METHOD", "\"name\": \"imc\", \"precision\": 0.01");
+    small_inputs_change(*state, "run.json", ", \"temperature_tolerance\": 0.5", "");
+    small_inputs_change(*state, "run.json",
+                        "\"replicas\": 4, \"equilibration\": 300, \"samples\": 50, \"every\": 10",
+                        "\"replicas\": 48, \"equilibration\": 0, \"samples\": 6, \"every\": 1, "
+                        "\"end_early\": \"no\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    assert_contains(result.err, "and begins again with 4 times as many steps");
+    assert_close(results_number("out/summary.json", "verification_steps"), 48 * (4 * 6 + 6), 1e-9);
+}
+
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -266,6 +283,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_cmaes_has_not_converged_when_its_verification_is_worse),
         TEST_WITHOUT_FIGURES(
             test_unstable_verification_tells_its_time_step_in_the_units_of_the_file),
+        TEST_WITHOUT_FIGURES(test_verification_that_is_on_its_way_begins_again),
         TEST_WITHOUT_FIGURES(test_nlopt_has_converged_when_its_steps_are_short),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
