@@ -205,7 +205,7 @@ static enum status add_scatter(const struct inversion_state *state, enum inversi
     for (size_t a = 0; a < known; a++)
         for (size_t b = 0; b < known && !state->grid.seen[a]; b++)
             gsl_matrix_set(t, a, b, 0);
-    mf_inversion_noise_find(state, INVERSION_NOISE_OF_BINS, NULL, factor->data);
+    mf_inversion_noise_find(state, mf_inversion_noise_of_band(state, kind), NULL, factor->data);
     gsl_blas_dtrmm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, factor, t);
     gsl_blas_dsyrk(CblasLower, CblasTrans, 1, t, 1, &to.matrix);
 done:

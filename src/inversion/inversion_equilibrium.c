@@ -15,11 +15,6 @@ static const double false_alarm = 1e-3;
 /// no more than time.
 static const double apart_alarm = 0.05;
 
-/// Ratio of variances of the means of replicas and of their quarters at twice the relaxation time:
-/// in an Ornstein-Uhlenbeck process 3 V(T)/(V(T/4) − V(T)), V(T) = 2 (T − 1 + exp(−T))/T², which is
-/// 12/T where it is large.
-static const double twice_its_memory = 6;
-
 /// Numbers that are tested: sections, and the sums of a sample.
 enum { TESTS = 2, MAX_QUANTITIES = INVERSION_MAX_SECTIONS + SAMPLER_SUMS };
 
@@ -157,12 +152,15 @@ static double find_chance_of_sides(const struct replicas *replicas, size_t numbe
         sides++;
     }
     freedom -= sides;
-    return squares > 0 ? sides * gsl_cdf_fdist_Q(largest * freedom / squares, 1, freedom) : 1;
+    if (!(squares > 0))
+        return largest > 0 ? 0 : 1;
+    return sides * gsl_cdf_fdist_Q(largest * freedom / squares, 1, freedom);
 }
 
-/// Whether halves of the replicas differ by where they began, in one of the quantities.
-static bool are_apart(const struct replicas *replicas, const struct quantity *quantity,
-                      size_t quantities) {
+/// The first of the quantities in which halves of the replicas differ by where they began; their
+/// number if none does.
+static size_t find_apart(const struct replicas *replicas, const struct quantity *quantity,
+                         size_t quantities) {
     for (size_t k = 0; k < quantities; k++) {
         double least = 1, tested = 0;
         for (size_t n = 0; n < quantity[k].count; n++) {
@@ -173,18 +171,16 @@ static bool are_apart(const struct replicas *replicas, const struct quantity *qu
             tested++;
         }
         if (tested > 0 && least * tested * (double)quantities < apart_alarm)
-            return true;
+            return k;
     }
-    return false;
+    return quantities;
 }
 
 /// Whether there are halves that begin on both sides, of enough replicas.
 static bool has_sides(const struct replicas *replicas) {
-    bool has = false;
-    for (int side = 0; side < REPLICAS_SIDES; side++)
-        has = has || replicas->begins[side];
-    return has && replicas->count >= REPLICAS_MIN_OF_SIDES &&
-           replicas->count % (1 << REPLICAS_SIDES) == 0;
+    const bool tilts = replicas->begins[REPLICAS_TILT];
+    return (tilts || replicas->begins[REPLICAS_STRETCH]) &&
+           replicas->count >= REPLICAS_MIN_OF_SIDES && replicas->count % (tilts ? 4 : 2) == 0;
 }
 
 void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
@@ -215,16 +211,11 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
     double min = false_alarm / (double)(TESTS * count);
     const double limit = min;
     unequilibrated->found = unequilibrated->drifts = false;
-    unequilibrated->memory = 1;
-    unequilibrated->apart =
-        has_sides(&state->replicas) && are_apart(&state->replicas, quantity, count);
     for (size_t k = 0; k < count; k++) {
         struct stationary is;
         TRY(test(state, &quantity[k], &is));
         const double chance = stationary_p_value(&is);
         unequilibrated->drifts = unequilibrated->drifts || is.drift < limit;
-        if (is.memory < limit)
-            unequilibrated->memory = fmax(unequilibrated->memory, is.memory_ratio);
         if (!(chance < min))
             continue;
         min = chance;
@@ -232,14 +223,21 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
         unequilibrated->is = is;
         snprintf(unequilibrated->quantity, sizeof unequilibrated->quantity, "%s", quantity[k].name);
     }
+    const size_t apart =
+        has_sides(&state->replicas) ? find_apart(&state->replicas, quantity, count) : count;
+    unequilibrated->apart = apart < count;
+    if (unequilibrated->apart && !unequilibrated->found) {
+        TRY(test(state, &quantity[apart], &unequilibrated->is));
+        snprintf(unequilibrated->quantity, sizeof unequilibrated->quantity, "%s",
+                 quantity[apart].name);
+    }
+    unequilibrated->found = unequilibrated->found || unequilibrated->apart;
     return STATUS_OK;
 }
 
 void mf_inversion_equilibrium_reset(struct inversion_state *state) {
     struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
-    const bool forgot = has_sides(&state->replicas) && !unequilibrated->apart &&
-                        unequilibrated->memory < twice_its_memory;
-    if (!unequilibrated->found || forgot)
+    if (!unequilibrated->found)
         state->work.mixed = true;
     if (state->work.mixed)
         unequilibrated->found = unequilibrated->drifts;

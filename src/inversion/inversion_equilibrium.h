@@ -7,11 +7,10 @@
 /// many sweeps between them. What the samples of one potential have cost so is where those of the
 /// next begin, which may need half of it.
 ///
-/// Where one of them remembers where it began, there are too few samples, unless it is chance where
-/// it began: replicas of molecules and mixtures begin on both sides of equilibrium, and as long as
-/// the two halves differ by more than the scatter within them (analysis of variance) the samples
-/// are equilibration. When they do not, each replica is a draw of equilibrium, however slowly it
-/// goes on from there, and the scatter of the replicas is the error of their mean.
+/// Where one of them remembers where it began, there are too few samples, and they are doubled.
+/// Replicas of molecules and mixtures begin on both sides of equilibrium: as long as the two halves
+/// differ by more than the scatter within them (analysis of variance), the samples are
+/// equilibration, too, and what they remember is not averaged over.
 #pragma once
 
 #include "observe/stationary.h"
@@ -27,9 +26,8 @@ enum { INVERSION_QUANTITY_SIZE = 32 };
 /// What had not settled, with the least chance to be so in equilibrium.
 struct inversion_unequilibrated {
     bool found;
-    bool drifts;   ///< something does, and not only remembers
-    bool apart;    ///< halves that began so, by more than their scatter
-    double memory; ///< the largest ratio of variances of what remembers, observe/stationary.h
+    bool drifts;                            ///< something does, and not only remembers
+    bool apart;                             ///< halves that began so, by more than their scatter
     char quantity[INVERSION_QUANTITY_SIZE]; ///< in words
     struct stationary is;
     uint64_t sweeps; ///< of each replica since the potential was changed

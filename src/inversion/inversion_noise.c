@@ -26,9 +26,8 @@ static void fill_variances(const struct inversion_state *state, enum inversion_n
                            double *v) {
     const struct potential_grid *grid = &state->grid;
     for (size_t block = 0, a = 0; block < grid->blocks; block++) {
-        const enum target_errors of = target_of(state, block)->errors_of;
-        const bool own = of == TARGET_ERRORS_OF_BINS ||
-                         (of == TARGET_ERRORS_UNKNOWN && kind == INVERSION_NOISE_OF_BINS);
+        const bool own = kind == INVERSION_NOISE_OF_BINS ||
+                         target_of(state, block)->errors_of == TARGET_ERRORS_OF_BINS;
         for (const size_t end = a + grid->known_of[block]; a < end; a++)
             v[a * grid->known + a] =
                 fmax(0, state->variance[a] - (own ? mf_inversion_target_variance(state, a) : 0));
@@ -92,6 +91,14 @@ void mf_inversion_noise_find(const struct inversion_state *state, enum inversion
         take_diagonal(state, more, factor);
     for (size_t a = 0; a < known; a++)
         memset(factor + a * known + a + 1, 0, (known - a - 1) * sizeof *factor);
+}
+
+enum inversion_noise_kind mf_inversion_noise_of_band(const struct inversion_state *state,
+                                                     enum inversion_noise_kind chosen) {
+    for (size_t block = 0; block < state->grid.blocks; block++)
+        if (target_of(state, block)->errors_of != TARGET_ERRORS_OF_SAMPLES)
+            return INVERSION_NOISE_OF_BINS;
+    return chosen;
 }
 
 /// C P⁻¹ C: what the prior of steps allows of the excess; k_B T cancels.

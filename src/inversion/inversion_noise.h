@@ -8,13 +8,13 @@
 /// A target gives an error for each bin, and not what they have in common. Mostly it is the mean of
 /// samples, too, of the same liquid: then its noise has the correlations of S (W). A figure's, or a
 /// rounded table's, is each bin's own (V), and so are errors that no file gives:
-/// W is V then. Where a target says that its errors are of samples (enum target_errors), V is W.
-/// Steps are made with W, which is the maximum likelihood
-/// of samples: minus the logarithm of that is the relative entropy, which is convex in the
-/// potential, and C enters it as such and not as C², so that its noise is not taken for
-/// information. Bands are those of such steps by V, which is the larger noise of what g hardly
-/// sees: where W is true they are too wide. Of a repulsive shoulder a step with W over 1.1 k_B T
-/// left 0.05, with V 0.9; the error of its ramp by V was 0.66 and 0.51.
+/// W is V then. Steps are made with W, which is the maximum likelihood of samples: minus the
+/// logarithm of that is the relative entropy, which is convex in the potential, and C enters it as
+/// such and not as C², so that its noise is not taken for information. Bands are those of such
+/// steps by V, which is the larger noise of what g hardly sees: where W is true they are too wide,
+/// and go by W if all targets say that their errors are of samples (enum target_errors) and the
+/// excess does not say otherwise. Of a repulsive shoulder a step with W over 1.1 k_B T left 0.05,
+/// with V 0.9; the error of its ramp by V was 0.66 and 0.51.
 ///
 /// Which of both it is the excess says, at a potential of which it may be what the prior of steps
 /// allows: the likelier of two normal laws, of the covariances W + C P⁻¹C and V + C P⁻¹C with the
@@ -41,6 +41,11 @@ enum inversion_noise_kind { INVERSION_NOISE_OF_SAMPLES, INVERSION_NOISE_OF_BINS 
 /// Tested: test_inversion_noise.
 void mf_inversion_noise_find(const struct inversion_state *state, enum inversion_noise_kind kind,
                              const double *more, double *factor);
+
+/// The kind of noise that bands are by, where steps are by the one that was chosen. Tested:
+/// test_inversion_noise.
+enum inversion_noise_kind mf_inversion_noise_of_band(const struct inversion_state *state,
+                                                     enum inversion_noise_kind chosen);
 
 /// The kind of noise that the excess is likelier to have. Fails: NO_MEMORY. Tested:
 /// test_inversion_noise.

@@ -19,6 +19,14 @@ static bool is_mixture(const struct sampler_system *system) {
            (size_t)topology->kind[0].count * (size_t)topology->kind[0].beads < topology->particles;
 }
 
+/// Whether there are molecules that can be coiled or stretched.
+static bool has_chains(const struct sampler_system *system) {
+    bool has = false;
+    for (int k = 0; system->molecules && k < system->molecules->topology.kinds; k++)
+        has = has || system->molecules->topology.kind[k].beads > 2;
+    return has;
+}
+
 /// Beginnings on both sides of equilibrium: half of the replicas with molecules that are stretched,
 /// half with coiled ones, and of mixtures each half with a wave of composition and without.
 static struct placement_bias begin_apart(const struct replicas *replicas, size_t k) {
@@ -37,8 +45,7 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
         .bins = bins,
         .numbers = numbers,
         .count = count,
-        .begins = {
-            [REPLICAS_STRETCH] = system->molecules != NULL, [REPLICAS_TILT] = is_mixture(system)}};
+        .begins = {[REPLICAS_STRETCH] = has_chains(system), [REPLICAS_TILT] = is_mixture(system)}};
     CHECK(mf_comoments_init(&replicas->counts, numbers));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];

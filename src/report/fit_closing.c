@@ -119,11 +119,10 @@ static void print_slowest(struct progress *to, const struct inverse_slowest *slo
     static const double few = 20;
     if (slowest->quantity[0] == '\0' || !(slowest->independent < few))
         return;
-    mf_progress_print(
-        to,
-        "slow: the samples hold %.0f independent values of %s, which the errors allow "
-        "for; more \"samples\" make them smaller",
-        slowest->independent, slowest->quantity);
+    mf_progress_print(to,
+                      "slow: the last samples hold some %.0f independent values of %s; more "
+                      "\"samples\" hold more",
+                      slowest->independent, slowest->quantity);
 }
 
 static void print_friction(struct progress *to, const struct fit_file *fit,

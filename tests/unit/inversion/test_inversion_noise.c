@@ -98,7 +98,13 @@ static void test_inversion_noise_of_a_target_of_samples_correlates_as_theirs(voi
     assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, UNSEEN, 4), 0, 1e-12);
     // A target that says that its errors are of samples has them also where bands ask.
     made.problem.targets.target[TARGET_RDF].errors_of = TARGET_ERRORS_OF_SAMPLES;
-    assert_close(covariance_of(&made, INVERSION_NOISE_OF_BINS, 3, 2), 0.94 * 4 * 0.5, 1e-12);
+    assert_int_equal(mf_inversion_noise_of_band(&made.state, INVERSION_NOISE_OF_SAMPLES),
+                     INVERSION_NOISE_OF_SAMPLES);
+    assert_int_equal(mf_inversion_noise_of_band(&made.state, INVERSION_NOISE_OF_BINS),
+                     INVERSION_NOISE_OF_BINS);
+    made.problem.targets.target[TARGET_RDF].errors_of = TARGET_ERRORS_UNKNOWN;
+    assert_int_equal(mf_inversion_noise_of_band(&made.state, INVERSION_NOISE_OF_SAMPLES),
+                     INVERSION_NOISE_OF_BINS);
     // Errors that no file gives are those of a scatter that sees each bin by itself.
     made.problem.targets.target[TARGET_RDF].errors_of = TARGET_ERRORS_OF_BINS;
     assert_close(covariance_of(&made, INVERSION_NOISE_OF_SAMPLES, 3, 3), 4, 1e-12);
