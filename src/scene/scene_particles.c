@@ -7,7 +7,7 @@
 #include "scene/scene_attributes.h"
 #include "scene/scene_coordinates.h"
 #include "io/data_table.h"
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 
 #include <math.h>
 

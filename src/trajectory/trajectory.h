@@ -17,6 +17,7 @@
 #include "trajectory/trajectory_units.h"
 
 struct trajectory;
+struct beads_file;
 
 struct trajectory_format {
     const char *name;
@@ -42,6 +43,10 @@ struct trajectory_format {
     /// Make positions, velocities, box and time from frame->raw. Several run at once. NULL: it has
     /// no coordinates, and is a structure beside a trajectory.
     enum status (*decode)(const struct trajectory *trajectory, struct trajectory_frame *frame);
+    /// Print a frame of beads; NULL: the format is read only. Fails: BAD_INPUT for what it cannot
+    /// hold.
+    enum status (*print)(struct beads_file *file, const struct trajectory_frame *beads);
+    void (*finish)(struct beads_file *file); ///< after the last frame; NULL: nothing follows
 };
 
 /// All formats; what is recognised first comes first.

@@ -2,7 +2,7 @@
 //
 // Snapshots of three particles whose numbers are known, read back by other means than they were
 // written with.
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -49,7 +49,7 @@ static char *write_one(void **state, const struct snapshot_format *format, const
 }
 
 static void test_extxyz_has_a_line_for_each_particle_by_id(void **state) {
-    char *text = write_one(state, &mf_snapshot_extxyz, "trajectory.extxyz");
+    char *text = write_one(state, &mf_format_xyz_snapshot, "trajectory.extxyz");
     assert_string_equal(
         text, "3\n"
               "Lattice=\"4 0 0 0 8 0 0 0 1\" pbc=\"T T F\" Step=20 Time=0.5 "
@@ -83,7 +83,7 @@ static void test_companions_follow_as_a_type_of_their_own(void **state) {
     int64_t size = 0;
     make(&particles);
     assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &solvent_particles, 20, 0.5));
-    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
     assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_json, folder->path, &size));
     assert_int_equal(mf_snapshot_type(&snapshot, 2), 1);
     assert_int_equal(mf_snapshot_type(&snapshot, 3), 2);
@@ -127,13 +127,14 @@ static void test_lammps_dump_is_read_back(void **state) {
     for (uint64_t step = 20; step <= 40; step += 20) {
         assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &solvent_particles, step,
                                    0.025 * (double)step));
-        assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_lammps, folder->path, &size));
+        assert_ok(
+            mf_snapshot_write(&snapshot, &mf_format_lammps_dump_snapshot, folder->path, &size));
         mf_snapshot_clear(&snapshot);
     }
     mf_particles_clear(&particles);
     assert_ok(mf_trajectory_open(&trajectory, temporary_folder_file(folder, "trajectory.lammpstrj"),
                                  &(struct trajectory_options){.units = "lj"}));
-    assert_string_equal(trajectory.format->name, mf_snapshot_lammps.name);
+    assert_string_equal(trajectory.format->name, mf_format_lammps_dump_snapshot.name);
     for (int n = 1; n <= 2; n++) {
         assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
         assert_true(more && frame.atoms == COUNT + 2 && frame.has_velocities);
@@ -202,13 +203,13 @@ static void test_extxyz_is_continued_behind_the_bytes_that_count(void **state) {
     make(&particles);
     assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, NULL, 20, 0.5));
     int64_t size = 0;
-    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
     const int64_t first = size;
-    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
     assert_int_equal(size, 2 * first);
-    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
     size = first; // of a checkpoint after the first
-    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_extxyz, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
     char *text = temporary_folder_read(temporary_folder_file(folder, "trajectory.extxyz"));
     assert_int_equal(strlen(text), 2 * first);
     assert_memory_equal(text, text + first, (size_t)first);

@@ -61,6 +61,9 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
                              uint64_t step, double time) MUST_USE;
 void mf_snapshot_clear(struct snapshot *snapshot);
 
+/// The column that is called so, or NULL.
+const struct snapshot_column *mf_snapshot_find(const struct snapshot *snapshot, const char *name);
+
 /// The reduced unit of a column: "lambda" of positions; "" of what the scene does not scale.
 const char *mf_snapshot_unit(const struct snapshot_column *column);
 
@@ -88,8 +91,8 @@ struct snapshot_format {
     void (*print)(const struct snapshot *snapshot, FILE *stream);
 };
 
-extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_extxyz,
-    mf_snapshot_lammps, mf_snapshot_gsd, mf_snapshot_xtc;
+extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_format_xyz_snapshot,
+    mf_format_lammps_dump_snapshot, mf_gsd_snapshot, mf_format_xtc_snapshot;
 enum { SNAPSHOT_FORMATS = 6 };
 
 /// All formats, NULL-terminated, and their names.

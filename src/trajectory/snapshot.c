@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 
 #include "base/memory.h"
 #include "io/tracked_files.h"
+#include "system/attributes.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -11,10 +12,10 @@
 
 const struct snapshot_format *const mf_snapshot_formats[] = {&mf_snapshot_vtp,
                                                              &mf_snapshot_json,
-                                                             &mf_snapshot_extxyz,
-                                                             &mf_snapshot_lammps,
-                                                             &mf_snapshot_gsd,
-                                                             &mf_snapshot_xtc,
+                                                             &mf_format_xyz_snapshot,
+                                                             &mf_format_lammps_dump_snapshot,
+                                                             &mf_gsd_snapshot,
+                                                             &mf_format_xtc_snapshot,
                                                              NULL};
 const char *const mf_snapshot_format_names[] = {"vtp", "json", "extxyz", "lammps-dump",
                                                 "gsd", "xtc",  NULL};
@@ -154,7 +155,14 @@ void mf_snapshot_clear(struct snapshot *snapshot) {
     *snapshot = (struct snapshot){0};
 }
 
-// Names -------------------------------------------------------------------------------------------
+// Names and units ---------------------------------------------------------------------------------
+
+const struct snapshot_column *mf_snapshot_find(const struct snapshot *snapshot, const char *name) {
+    for (int n = 0; n < snapshot->columns; n++)
+        if (strcmp(snapshot->column[n].name, name) == 0)
+            return &snapshot->column[n];
+    return NULL;
+}
 
 void mf_snapshot_component_name(const struct snapshot_column *column, int component,
                                 char name[SNAPSHOT_NAME_SIZE]) {
@@ -181,6 +189,50 @@ const char *mf_snapshot_type_name(const struct snapshot *snapshot, size_t partic
     return composition_is_mixed(snapshot->composition)
                ? snapshot->composition->name[mf_snapshot_type(snapshot, particle)]
                : "A";
+}
+
+const char *mf_snapshot_unit(const struct snapshot_column *column) {
+    static const char *const known[][2] = {
+        {"position", "lambda"}, {"velocity", "lambda/tau"}, {"force", "k_B T_0/lambda"}};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strcmp(column->name, known[k][0]) == 0)
+            return known[k][1];
+    for (const struct field *field = mf_attributes_fields; field->name; field++)
+        if (strcmp(column->name, field->name) == 0)
+            return field->unit;
+    return "";
+}
+
+static const char *name_units(const struct units *units) {
+    if (!mf_units_are_physical(units))
+        return "lj";
+    return units->system == UNITS_NM_PS ? "nm-ps" : "real";
+}
+
+enum status mf_snapshot_translate(struct snapshot *converted, const struct snapshot *from,
+                                  const struct units *units) {
+    mf_snapshot_clear(converted);
+    *converted = *from;
+    converted->memory = mf_memory_zeroed(from->numbers, sizeof(double));
+    if (converted->memory == NULL) {
+        *converted = (struct snapshot){0};
+        return STATUS_NO_MEMORY;
+    }
+    converted->units = name_units(units);
+    converted->time = mf_units_file_value(from->time, mf_units_factor(units, "tau"));
+    for (int d = 0; d < from->box.dimensions; d++)
+        converted->box.length[d] =
+            mf_units_file_value(from->box.length[d], mf_units_factor(units, "lambda"));
+    for (int n = 0; n < from->columns; n++) {
+        const struct snapshot_column *column = &from->column[n];
+        const double factor = mf_units_factor(units, mf_snapshot_unit(column));
+        const size_t numbers = (size_t)column->components * from->count;
+        double *values = converted->memory + (column->values - from->memory);
+        for (size_t k = 0; k < numbers; k++)
+            values[k] = column->values[k] * factor;
+        converted->column[n].values = values;
+    }
+    return STATUS_OK;
 }
 
 // Writing -----------------------------------------------------------------------------------------

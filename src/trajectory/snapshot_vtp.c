@@ -4,7 +4,7 @@
 // Numbers are binary in base64: they are exact, and a third of the size of their digits. W.
 // Schroeder, K. Martin and B. Lorensen, The Visualization Toolkit (4th ed., 2006); the VTK file
 // formats document.
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 //
 // Frames that are packed and read again are rounded to 0.001 nm, whatever their atoms are like; the
 // reader is that of GROMACS's files, and Python's tests have MDAnalysis read ours.
-#include "io/xtc.h"
+#include "trajectory/xtc.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 #include "trajectory/trajectory.h"
