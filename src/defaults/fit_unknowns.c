@@ -76,8 +76,7 @@ static void enter_group(struct scene_fitted *fitted, int order, const char *name
     if (has_law || fitted->count[order] == MOLECULES_MAX_GROUPS)
         return;
     if (!mf_topology_is_name(name)) {
-        mf_json_fault(from, name,
-                      "expected a group name of up to %d letters, digits, _ and -, " NAMES_RESERVED,
+        mf_json_fault(from, name, "expected a group name of " NAMES_OF_OTHERS,
                       TOPOLOGY_NAME_SIZE - 1);
         return;
     }

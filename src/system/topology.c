@@ -4,17 +4,12 @@
 #include "base/memory.h"
 #include "base/names.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 bool mf_topology_is_name(const char *name) {
-    const size_t length = strlen(name);
-    for (size_t k = 0; k < length; k++)
-        if (!isalnum((unsigned char)name[k]) && name[k] != '_' && name[k] != '-')
-            return false;
-    return length > 0 && length < TOPOLOGY_NAME_SIZE && !mf_names_is_reserved(name);
+    return mf_names_is_plain(name, "_-", TOPOLOGY_NAME_SIZE) && !mf_names_is_reserved(name);
 }
 
 // Checks ------------------------------------------------------------------------------------------

@@ -56,7 +56,7 @@ struct topology {
                             ///< excluded_start[i + 1])
 };
 
-/// Whether a kind or a group can be called so: letters, digits, _ and -, not too many.
+/// Whether a kind or a group can be called so: NAMES_OF_OTHERS.
 bool mf_topology_is_name(const char *name);
 
 /// The beads of a term as a text, "1-2-3", from 1 on.
