@@ -27,10 +27,6 @@ const struct shape *const mf_shapes[] = {&bezier, &bspline, NULL};
 
 NAMED_RECORD(struct shape);
 
-const struct shape *mf_shape_find(const char *name) {
-    return mf_names_find(mf_shapes, name);
-}
-
 enum status mf_shape_basis(const struct shape *shape, size_t coefficients, const double *t,
                            size_t points, double *basis) {
     OWNED double *unit = NULL, *column = NULL;

@@ -355,15 +355,6 @@ void mf_topology_clear(struct topology *topology) {
     *topology = (struct topology){0};
 }
 
-bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t j) {
-    if (topology == NULL)
-        return false;
-    for (size_t n = topology->excluded_start[i]; n < topology->excluded_start[i + 1]; n++)
-        if (topology->excluded[n] == j)
-            return true;
-    return false;
-}
-
 int mf_topology_reach(const struct topology_kind *kind) {
     int reach = 0;
     for (int order = 0; order < BONDED_KINDS; order++)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "forces/reference_forces.h"
+#include "shared/slow_forces.h"
 
 #include "base/memory.h"
+
+#include <math.h>
+#include <string.h>
 
 /// Separation of the nearest images of particles i and j; returns its length.
 static double separation(const struct particles *particles, size_t i, size_t j, double r_ij[3]) {
@@ -14,53 +17,33 @@ static double separation(const struct particles *particles, size_t i, size_t j, 
     return sqrt(square);
 }
 
-void mf_reference_energies(const struct table *potential, const struct composition *composition,
-                           const struct particles *particles, const struct neighbours *neighbours,
-                           float *energy) {
-    memset(energy, 0, particles->count * sizeof *energy);
-    for (size_t i = 0; i < particles->count; i++)
-        for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
-            const size_t j = (size_t)neighbours->list[k];
-            const uint32_t a = particles->id[i], b = particles->id[j];
-            double r_ij[3], phi;
-            const double r = separation(particles, i, j, r_ij);
-            const int pair = mf_composition_pair_of_ids(composition, a, b);
-            if (j == i || r >= table_cutoff(potential, pair)) // j = i is what is left of a row
-                continue;
-            mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
-            energy[a] += (float)(0.5 * phi);
-            energy[b] += (float)(0.5 * phi);
-        }
-}
-
 /// Thickness of the shell inside the cutoff in which pairs are counted, relative to the cutoff.
 static const double shell = 0.01;
 
-double mf_reference_shell_begin(const struct table *potential, int pair) {
+static double shell_begin(const struct table *potential, int pair) {
     return (1 - shell) * table_cutoff(potential, pair);
 }
 
-double mf_reference_density_at_cutoff(const struct table *potential, int pair, double r,
-                                      double temperature, int dimensions) {
+static double density_at_cutoff(const struct table *potential, int pair, double r,
+                                double temperature, int dimensions) {
     const double cutoff = table_cutoff(potential, pair);
     double phi;
     mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
     return pow(cutoff / r, dimensions - 1) * exp(phi / temperature) / (shell * cutoff);
 }
 
-double mf_reference_edge_laplacian(const struct table *potential, int pair, double density) {
+static double edge_laplacian(const struct table *potential, int pair, double density) {
     double slope;
     mf_table_evaluate_pair(potential, pair, table_cutoff(potential, pair) * (1 - 1e-9), NULL,
                            &slope, NULL);
     return -2 * slope * density;
 }
 
-enum status mf_reference_configurational(const struct table *potential,
-                                         const struct composition *composition, double temperature,
-                                         const struct particles *particles,
-                                         const struct neighbours *neighbours, double *const *known,
-                                         double *const *others, double *squares,
-                                         double *laplacian) {
+enum status slow_forces_configurational(const struct table *potential,
+                                        const struct composition *composition, double temperature,
+                                        const struct particles *particles,
+                                        const struct neighbours *neighbours, double *const *known,
+                                        double *const *others, double *squares, double *laplacian) {
     const int dimensions = particles->box.dimensions;
     OWNED double *force = NULL;
     double density[COMPOSITION_MAX_PAIRS] = {0}; // of each pair type
@@ -79,9 +62,8 @@ enum status mf_reference_configurational(const struct table *potential,
             if (r >= cutoff)
                 continue;
             mf_table_evaluate_pair(potential, pair, r, NULL, &slope, &curvature);
-            if (r > mf_reference_shell_begin(potential, pair))
-                density[pair] +=
-                    mf_reference_density_at_cutoff(potential, pair, r, temperature, dimensions);
+            if (r > shell_begin(potential, pair))
+                density[pair] += density_at_cutoff(potential, pair, r, temperature, dimensions);
             *laplacian += 2 * (curvature + (dimensions - 1) * slope / r);
             for (int d = 0; d < dimensions; d++) {
                 force[3 * i + (size_t)d] -= slope * r_ij[d] / r;
@@ -89,7 +71,7 @@ enum status mf_reference_configurational(const struct table *potential,
             }
         }
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
-        *laplacian += mf_reference_edge_laplacian(potential, pair, density[pair]);
+        *laplacian += edge_laplacian(potential, pair, density[pair]);
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];
     for (int d = 0; d < dimensions && known; d++)
@@ -143,9 +125,9 @@ static void add_term(const struct many_body *many_body, const struct many_body_t
         }
 }
 
-enum status mf_reference_many_body(const struct many_body *many_body,
-                                   const struct particles *particles, double *const *force,
-                                   struct pair_sums *sums) {
+enum status slow_forces_many_body(const struct many_body *many_body,
+                                  const struct particles *particles, double *const *force,
+                                  struct pair_sums *sums) {
     OWNED double *slope = NULL;
     TRY_ARRAY(slope, particles->count);
     for (int t = 0; t < many_body->terms; t++)

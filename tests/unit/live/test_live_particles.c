@@ -2,7 +2,7 @@
 //
 // Energies of single particles against what the pair kernels sum, and where they can be told by
 // hand.
-#include "forces/reference_forces.h"
+#include "live/live_particles.h"
 
 #include "base/memory.h"
 #include "shared/is_close.h"
@@ -28,7 +28,8 @@ static void test_energies_sum_to_what_the_kernels_sum(void **state) {
         assert_non_null(energy);
         pairs_make(&particles, &neighbours, &systems[s], &law);
         mf_pair_forces(&law, &particles, &neighbours, 0, PAIR_FORCES_AND_SUMS, &sums);
-        mf_reference_energies(law.potential, &law.composition, &particles, &neighbours, energy);
+        mf_live_particles_energies(law.potential, &law.composition, &particles, &neighbours,
+                                   energy);
         for (size_t k = 0; k < particles.count; k++)
             sum += (double)energy[k];
         assert_true(sums.energy > 100);
@@ -56,7 +57,7 @@ static void test_energy_is_that_of_the_particle_with_this_id(void **state) {
         particles.position[1][k] = particles.position[2][k] = 2;
     }
     assert_ok(mf_neighbours_sort_and_build(&neighbours, &particles));
-    mf_reference_energies(law.potential, &law.composition, &particles, &neighbours, energy);
+    mf_live_particles_energies(law.potential, &law.composition, &particles, &neighbours, energy);
     mf_table_evaluate(law.potential, 0.4, &first, NULL, NULL);
     mf_table_evaluate(law.potential, 0.7, &second, NULL, NULL);
     assert_close_relative(energy[0], 0.5 * first, 1e-6);
