@@ -15,11 +15,6 @@ enum status mf_mapping_build_masses(struct mapping *mapping, const struct mappin
 /// The element that an atom seems to be, or NULL.
 const char *mf_mapping_element(const struct structure *structure, size_t atom);
 
-/// Warn of carbons that seem to have their hydrogens in them.
-/// @param[in] guessed  shape [atoms]: whether the mass of the atom is that of its element
-enum status mf_mapping_build_united(struct mapping *mapping, const struct structure *structure,
-                                    const bool *guessed) MUST_USE;
-
 /// Note how many beads of which type there are, of how many atoms.
 enum status mf_mapping_build_notes(struct mapping *mapping) MUST_USE;
 
