@@ -278,8 +278,7 @@ const struct trajectory_format mf_format_lammps_dump = {
     .print = print,
 };
 
-// Snapshots of a scene
-// -----------------------------------------------------------------------------
+// Snapshots of a scene ----------------------------------------------------------------------------
 
 /// Three components, of which the third is 0 in two dimensions.
 static void print_vector(const struct snapshot *snapshot, const struct snapshot_column *column,

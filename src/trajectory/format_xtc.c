@@ -166,8 +166,7 @@ const struct trajectory_format mf_format_xtc = {
     .print = print,
 };
 
-// Snapshots of a scene
-// -----------------------------------------------------------------------------
+// Snapshots of a scene ----------------------------------------------------------------------------
 
 /// Of a nm in the snapshot's unit, and of a ps.
 struct scale {

@@ -398,8 +398,7 @@ const struct trajectory_format mf_format_xyz = {
     .print = print,
 };
 
-// Snapshots of a scene
-// -----------------------------------------------------------------------------
+// Snapshots of a scene ----------------------------------------------------------------------------
 
 static int width_of(const struct snapshot_column *column) {
     return column->vector ? 3 : column->components;
