@@ -267,6 +267,8 @@ double mf_export_lammps_reach(const struct export_model *model) {
 }
 
 // Local densities ---------------------------------------------------------------------------------
+//
+// A pair_style local/density for each, over those of the pairs.
 
 bool mf_export_lammps_overlays(const struct export_job *job) {
     return job->densities.terms > 0;

@@ -8,6 +8,9 @@
 #include <sys/stat.h>
 
 // Units: products of powers -----------------------------------------------------------------------
+//
+// "nm ps-1", by symbols of the module "units": P. de Buyl, P. H. Colberg and F. Höfling, Comput.
+// Phys. Commun. 185, 1546 (2014); https://h5md.nongnu.org.
 
 /// One mole, and one gram in u: CODATA 2018.
 #define MOLE 6.02214076e23

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/names.h"
-#include "curves/bspline.h"
 #include "curves/shape.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -59,7 +58,7 @@ static void test_bspline_basis_adds_up_to_1_before_the_last_interval(void **stat
     grid(t, POINTS);
     for (int k = 0; k < COEFFICIENTS; k++)
         ones[k] = 1;
-    assert_ok(mf_bspline_values(ones, COEFFICIENTS, t, values, POINTS));
+    assert_ok(find("bspline")->values(ones, COEFFICIENTS, t, values, POINTS));
     for (int p = 0; p < POINTS; p++) {
         if (t[p] <= last)
             assert_close(values[p], 1, 1e-14);
@@ -75,7 +74,7 @@ static void test_bspline_has_its_textbook_values_in_the_last_interval(void **sta
     (void)state;
     for (double u = 0; u <= 1; u += 0.125) {
         double value;
-        assert_ok(mf_bspline_values(ones, 4, (double[]){0.5 + 0.5 * u}, &value, 1));
+        assert_ok(find("bspline")->values(ones, 4, (double[]){0.5 + 0.5 * u}, &value, 1));
         assert_close(value, 1 - u * u * u, 1e-14);
     }
 }
@@ -99,9 +98,9 @@ static void test_bspline_coefficient_acts_on_four_intervals_alone(void **state) 
 static void test_bspline_is_a_polynomial_when_coefficients_are_few(void **state) {
     double value;
     (void)state;
-    assert_ok(mf_bspline_values((double[]){3}, 1, (double[]){0.25}, &value, 1));
+    assert_ok(find("bspline")->values((double[]){3}, 1, (double[]){0.25}, &value, 1));
     assert_close(value, 3 * 0.75, 1e-14);
-    assert_ok(mf_bspline_values((double[]){3, 2}, 2, (double[]){0.25}, &value, 1));
+    assert_ok(find("bspline")->values((double[]){3, 2}, 2, (double[]){0.25}, &value, 1));
     assert_close(value, 3 * 0.75 * 0.75 + 2 * 2 * 0.25 * 0.75, 1e-14);
 }
 
@@ -130,7 +129,7 @@ static void test_shape_fit_recovers_the_coefficients_of_a_bspline(void **state) 
     (void)state;
     grid(t, POINTS);
     some_coefficients(coefficients, COEFFICIENTS);
-    assert_ok(mf_bspline_values(coefficients, COEFFICIENTS, t, values, POINTS));
+    assert_ok(find("bspline")->values(coefficients, COEFFICIENTS, t, values, POINTS));
     for (int p = 0; p < POINTS; p++)
         weights[p] = 1 + (p % 5);
     assert_ok(mf_shape_fit(find("bspline"), t, values, NULL, POINTS, fitted, COEFFICIENTS));
