@@ -156,8 +156,9 @@ void mf_genetic_walk(double *genes, int64_t count, double height, struct rng_seq
     }
 }
 
-void mf_genetic_mutate_walk(double *genes, const struct genetic *genetic,
-                            struct rng_sequence *random) {
+/// In each block a walk is added, of |z| 2^(1 − 5u) times the survivors' spread there, at least
+/// 1e-4 of the range: steps are as long as those that led to the survivors, and shrink with them.
+static void mutate_walk(double *genes, const struct genetic *genetic, struct rng_sequence *random) {
     const double range = genetic->parameters.gene_maximum - genetic->parameters.gene_minimum;
     for (size_t b = 0; b < genetic->blocks; b++) {
         const double u = mf_rng_sequence_uniform(random), v = mf_rng_sequence_uniform(random);
@@ -178,7 +179,7 @@ void mf_genetic_mutate(double *genes, const struct genetic *genetic, struct rng_
         mf_genetic_mutate_scale(genes, parameters, mutated_genes, additive_share, random);
         break;
     case GENETIC_WALK:
-        mf_genetic_mutate_walk(genes, genetic, random);
+        mutate_walk(genes, genetic, random);
         break;
     }
 }

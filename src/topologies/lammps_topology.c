@@ -31,13 +31,25 @@ static const struct scale *find_scale(const char *name) {
     return NULL;
 }
 
+/// The units that the first line of a file tells, or "".
+static void find_units(const char *text, char units[TOPOLOGY_NAME_SIZE]) {
+    static const char key[] = "units = ";
+    char title[512];
+    units[0] = '\0';
+    snprintf(title, sizeof title, "%.*s", (int)strcspn(text, "\n"), text);
+    const char *at = strstr(title, key);
+    if (at)
+        snprintf(units, TOPOLOGY_NAME_SIZE, "%.*s", (int)strcspn(at + strlen(key), " ,\t\r"),
+                 at + strlen(key));
+}
+
 enum status mf_lammps_topology_units(const char *file, const char *given, const struct units *units,
                                      const char **style) {
     char *text, title[TOPOLOGY_NAME_SIZE];
     size_t length;
     const bool known = mf_units_known(units);
     TRY(mf_text_file_read(file, &text, &length));
-    mf_lammps_terms_units(text, title);
+    find_units(text, title);
     mf_memory_free(text);
     if (title[0] && given[0] && strcmp(title, given) != 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:1: the file has the units \"%s\"", file, title);
@@ -112,11 +124,8 @@ static enum status find_groups(struct reading *reading) {
 
 // The file ----------------------------------------------------------------------------------------
 
-static enum status read_terms(struct reading *reading, const struct structure *structure) {
-    OWNED char *text = NULL;
-    size_t length;
-    TRY(mf_text_file_read(reading->file, &text, &length));
-    TRY(mf_lammps_terms_read(&reading->terms, reading->file, text, length, structure));
+static enum status read_terms(struct reading *reading, const struct trajectory *trajectory) {
+    TRY(mf_lammps_terms_read(&reading->terms, &trajectory->structure, &trajectory->first));
     for (int order = 0; order < BONDED_KINDS; order++) {
         TRY_ARRAY(reading->group[order], reading->terms.types[order] + 1);
         for (int64_t type = 0; type <= reading->terms.types[order]; type++)
@@ -159,7 +168,7 @@ enum status mf_lammps_topology_read(struct molecules *molecules, struct composit
     note[0] = '\0';
     *order = NULL;
     TRY(mf_trajectory_open(&trajectory, file, &options));
-    CHECK(read_terms(&reading, &trajectory.structure));
+    CHECK(read_terms(&reading, &trajectory));
     CHECK(find_groups(&reading));
     CHECK(find_kinds(&reading, &trajectory.structure, exclude, &molecules->topology, composition,
                      order));
@@ -192,7 +201,7 @@ enum status mf_lammps_topology_order(const char *file, const char *style,
     struct composition types = {0};
     *order = NULL;
     TRY(mf_trajectory_open(&trajectory, file, &options));
-    CHECK(read_terms(&reading, &trajectory.structure));
+    CHECK(read_terms(&reading, &trajectory));
     for (int n = 0; n < BONDED_KINDS; n++)
         for (int64_t type = 0; type <= reading.terms.types[n]; type++)
             reading.group[n][type] = (int)type;
