@@ -4,10 +4,11 @@
 #pragma once
 
 #include "base/status.h"
-#include "topologies/lammps_styles.h"
 #include "system/topology.h"
 #include "trajectory/frame.h"
 #include "trajectory/structure.h"
+
+enum { LAMMPS_MAX_NUMBERS = 8 }; ///< of a line of coefficients
 
 /// A line of "Bond Coeffs" and the like.
 struct lammps_coefficient {
