@@ -15,14 +15,14 @@ struct fit_result {
     enum status status; ///< OK: converged, or finished; UNCONVERGED; INTERRUPTED
     bool settled;       ///< whether OK says that it has converged
     uint64_t iterations, evaluations, engine_steps;
-    double seconds;                            ///< of the fit, without its verification
-    const double *curve[UNKNOWNS];             ///< on the unknown's points; NULL: not fitted
-    const double *curve_error[UNKNOWNS];       ///< may hold NaN: not known
-    const double *curve_flat[UNKNOWNS];        ///< shape [INVERSE_FLAT, points]; may hold NaN
-    const double *first[UNKNOWNS];             ///< the curve of the first iteration; NULL: none yet
-    double first_error, error;                 ///< of the fit, as its method measured them
-    const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
-    struct inverse_ramp ramp;                  ///< error 0: not known
+    double seconds;                      ///< of the fit, without its verification
+    const double *curve[UNKNOWNS];       ///< on the unknown's points; NULL: not fitted
+    const double *curve_error[UNKNOWNS]; ///< may hold NaN: not known
+    const double *curve_flat[UNKNOWNS];  ///< shape [INVERSE_FLAT, points]; may hold NaN
+    const double *first[UNKNOWNS];       ///< the curve of the first iteration; NULL: none yet
+    double first_error, error;           ///< of the fit, as its method measured them
+    const double *without_ramp;          ///< inverse_step.without_ramp; may hold NaN
+    struct inverse_ramp ramp;            ///< error 0: not known
     struct inverse_slowest slowest;
     const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
     const struct inverse_parameter *number;    ///< shape [problem.numbers]
