@@ -35,6 +35,14 @@ enum status mf_names_collect(const void *list, const char *before, const char **
     return STATUS_OK;
 }
 
+bool mf_names_is_plain(const char *name, const char *marks, size_t size) {
+    static const char usual[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+    size_t length = 0;
+    while (name[length] && (strchr(usual, name[length]) || strchr(marks, name[length])))
+        length++;
+    return length > 0 && length < size && name[length] == '\0';
+}
+
 bool mf_names_is_reserved(const char *name) {
     static const char *const before[] = {"now_", "error_"};
     static const char *const suffix[] = {"_history",   "_flat",  "_error",

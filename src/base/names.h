@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Names: of records in a list, and those that are reserved.
+/// @file Names: of records in a list, those that people give, and those that are reserved.
 ///
 /// What a file may choose from (integrators, methods, families of curves, shapes, optimisers)
 /// stands in a list: an array of pointers to records of one type, with NULL at its end. The first
@@ -25,6 +25,13 @@ const void *mf_names_find(const void *list, const char *name);
 /// Fails: NO_MEMORY.
 enum status mf_names_collect(const void *list, const char *before, const char ***names) MUST_USE;
 
+/// @name Names that people give
+/// They become parts of files' names and of columns'.
+
+/// Whether a name has 1 to `size` − 1 letters of ASCII, digits and characters of `marks`: "_" of
+/// types, since "A-B" is a pair of them, "_-" of all others.
+bool mf_names_is_plain(const char *name, const char *marks, size_t size);
+
 /// @name Reserved names
 /// Tables, columns and numbers of a result have words before and after the names of types, kinds,
 /// groups and modes: potential_A-B_history.tsv, rdf_now_A-B.tsv, "backbone_error". A name that has
@@ -35,5 +42,9 @@ enum status mf_names_collect(const void *list, const char *before, const char **
 #define NAMES_RESERVED                                                                             \
     "and does not begin with now_ or error_ nor end with _history, _flat, _error, _boltzmann, "    \
     "_lower or _upper, as the program's tables do"
+
+/// The rule in messages, with how many characters there may be at most.
+#define NAMES_OF_TYPE "up to %d letters, digits and _, " NAMES_RESERVED
+#define NAMES_OF_OTHERS "up to %d letters, digits, _ and -, " NAMES_RESERVED
 
 bool mf_names_is_reserved(const char *name);

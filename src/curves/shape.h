@@ -21,9 +21,6 @@ struct shape {
 /// All shapes, NULL-terminated: "bezier" (curves/bezier.h) and "bspline" (curves/bspline.h).
 extern const struct shape *const mf_shapes[];
 
-/// The one of that name, or NULL.
-const struct shape *mf_shape_find(const char *name);
-
 /// What each coefficient adds to the curve: values = basis · coefficients.
 /// @param[out] basis  shape [points, coefficients]
 /// Fails: NO_MEMORY. Tested: test_shape.

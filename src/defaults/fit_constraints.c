@@ -2,7 +2,7 @@
 #include "defaults/fit_constraints.h"
 
 #include "defaults/fit_choice.h"
-#include "io/json_drop.h"
+#include "io/json_fill.h"
 #include "problem/bonded_grid.h"
 
 #include <math.h>

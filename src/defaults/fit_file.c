@@ -85,9 +85,6 @@ static enum status read_method(struct fit_file *fit, struct json_object *root, b
     struct json_object object = mf_json_child_of(root, "method", required, "name");
     if (object.item == NULL)
         return STATUS_OK;
-    if (mf_json_refuse_choice(&object, "name", "joint-imc",
-                              "write \"imc\", which fits one state or several"))
-        return STATUS_OK;
     TRY(mf_names_collect(mf_methods, NULL, &names));
     const char *name = mf_json_choice(&object, "name", names, NULL);
     mf_memory_free(names);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "defaults/fit_states.h"
 
+#include "base/names.h"
 #include "base/rng.h"
 #include "defaults/fit_densities.h"
 #include "inversion/inversion.h"
@@ -12,14 +13,6 @@
 #include <string.h>
 
 static const char *const key = "states";
-
-/// They are names of folders.
-static bool is_plain(const char *name) {
-    static const char letters[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
-    return name[0] && name[0] != '.' && strlen(name) < FIT_STATE_NAME_SIZE &&
-           name[strspn(name, letters)] == '\0';
-}
 
 /// What a state can have of its own; the rest is of all.
 static enum status check_keys(const struct json_object *states, const char *file,
@@ -46,7 +39,7 @@ static enum status check_keys(const struct json_object *states, const char *file
 static enum status check_names(const struct json_object *states, const char *file, size_t *count) {
     const char *name;
     for (*count = 0; (name = mf_json_key(states, *count)); ++*count) {
-        if (!is_plain(name))
+        if (name[0] == '.' || !mf_names_is_plain(name, "_-.", FIT_STATE_NAME_SIZE)) // of a folder
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: %s: \"%.80s\": expected a state name of letters, digits, _, "
                                   "- and ., at most %d",

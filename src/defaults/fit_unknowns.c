@@ -76,8 +76,7 @@ static void enter_group(struct scene_fitted *fitted, int order, const char *name
     if (has_law || fitted->count[order] == MOLECULES_MAX_GROUPS)
         return;
     if (!mf_topology_is_name(name)) {
-        mf_json_fault(from, name,
-                      "expected a group name of up to %d letters, digits, _ and -, " NAMES_RESERVED,
+        mf_json_fault(from, name, "expected a group name of " NAMES_OF_OTHERS,
                       TOPOLOGY_NAME_SIZE - 1);
         return;
     }
@@ -216,7 +215,6 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
         mf_fit_base_check(unknown, object);
         return STATUS_OK;
     }
-    mf_json_renamed(object, "genes", "coefficients");
     mf_json_retired(object, "spacing", "even", "coefficients are spread evenly; leave it out");
     TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     mf_fit_base_check(unknown, object);
@@ -286,7 +284,6 @@ enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root)
         wanted += fit->unknown[kind].wanted;
     if (object.item) {
         const size_t faults = mf_json_fault_count(root->document);
-        mf_json_renamed(&object, "weight", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
         mf_json_finish(&object);
         if (wanted == 0 && !mf_json_has(&object, "numbers") &&
             mf_json_fault_count(root->document) == faults)

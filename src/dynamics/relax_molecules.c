@@ -2,10 +2,98 @@
 #include "dynamics/relax_molecules.h"
 
 #include "dynamics/relax.h"
-#include "dynamics/relax_soft.h"
 #include "system/rings.h"
 
 #include <math.h>
+
+// Forces with a cap -------------------------------------------------------------------------------
+
+/// Caps in k_B T over the mean spacing.
+static const double caps[] = {20, 100};
+enum { STAGES = sizeof caps / sizeof *caps };
+
+// The capped potential ----------------------------------------------------------------------------
+
+/// A pair type's Φ, below `from` a straight line.
+struct capped {
+    const struct table *table;
+    int pair;
+    double from, value, slope;
+};
+
+static double capped_value(const void *parameters, double r) {
+    const struct capped *own = parameters;
+    double value;
+    if (r < own->from)
+        return own->value + own->slope * (r - own->from);
+    mf_table_evaluate_pair(own->table, own->pair, r, &value, NULL, NULL);
+    return value;
+}
+
+static double capped_cutoff(const void *parameters) {
+    const struct capped *own = parameters;
+    return table_cutoff(own->table, own->pair);
+}
+
+static const struct curve_family capped_family = {
+    .name = "capped", .value = capped_value, .cutoff = capped_cutoff};
+
+/// From the cutoff inwards to where the force is the cap.
+static struct capped find_cap(const struct table *table, int pair, double cap) {
+    struct capped capped = {.table = table, .pair = pair};
+    const double cutoff = table_cutoff(table, pair);
+    for (int k = TABLE_INTERVALS; k >= 0; k--) {
+        const double r = cutoff * k / TABLE_INTERVALS;
+        double slope;
+        mf_table_evaluate_pair(table, pair, r, NULL, &slope, NULL);
+        if (slope > -cap)
+            continue;
+        capped.from = r;
+        mf_table_evaluate_pair(table, pair, r, &capped.value, NULL, NULL);
+        capped.slope = -cap;
+        break;
+    }
+    return capped;
+}
+
+static enum status cap_table(const struct table *table, double cap, struct table *to) {
+    struct table part[TABLE_MAX_CURVES] = {{0}};
+    enum status status = STATUS_OK;
+    for (int pair = 0; pair < table->curves; pair++) {
+        struct capped capped = find_cap(table, pair, cap);
+        const struct curve curve = {&capped_family, &capped};
+        if (table_cutoff(table, pair) > 0)
+            CHECK(mf_table_init_potential(&part[pair], &curve));
+    }
+    CHECK(mf_table_stack(to, part, table->curves));
+done:
+    for (int pair = 0; pair < table->curves; pair++)
+        mf_table_clear(&part[pair]);
+    return status;
+}
+
+// Relaxation --------------------------------------------------------------------------------------
+
+enum status mf_relax_soft(struct simulation *simulation) {
+    const struct table *whole = simulation->law.potential;
+    const struct particles *particles = &simulation->particles;
+    const double spacing = pow(mf_particles_density(particles), -1.0 / particles->box.dimensions);
+    const double temperature = fmax(simulation->setup.temperature, 1e-3);
+    enum status status = STATUS_OK;
+    for (int stage = 0; stage < STAGES && whole && status == STATUS_OK; stage++) {
+        const double cap = caps[stage] * temperature / spacing;
+        struct table soft = {0};
+        status = cap_table(whole, cap, &soft);
+        simulation->law.potential = &soft;
+        if (status == STATUS_OK)
+            status = mf_relax_downhill(simulation, cap / 4);
+        simulation->law.potential = whole;
+        mf_table_clear(&soft);
+    }
+    return status;
+}
+
+// Whole molecules ---------------------------------------------------------------------------------
 
 /// A second time is seldom needed.
 enum { MAX_TIMES = 10 };

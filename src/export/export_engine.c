@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 
 #define EXPORT_LIST(record) &record,
-const struct export_engine *const mf_export_engines[] = {EXPORT_ENGINES(EXPORT_LIST) NULL};
+static const struct export_engine *const engines[] = {EXPORT_ENGINES(EXPORT_LIST) NULL};
 
 enum { MAX_ENGINES = 16 };
 
@@ -22,10 +22,10 @@ static enum status find_engine(const char *name, const struct export_engine **en
     const char *names[MAX_ENGINES];
     char hint[256];
     size_t count = 0;
-    for (; mf_export_engines[count]; count++) {
-        names[count] = mf_export_engines[count]->name;
+    for (; engines[count]; count++) {
+        names[count] = engines[count]->name;
         if (strcmp(name, names[count]) == 0) {
-            *engine = mf_export_engines[count];
+            *engine = engines[count];
             return STATUS_OK;
         }
     }

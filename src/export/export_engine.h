@@ -9,7 +9,6 @@
 #include "export/export_density.h"
 #include "export/export_dynamics.h"
 #include "export/export_grid.h"
-#include "export/export_power.h"
 #include "export/export_projection.h"
 #include "export/export_units.h"
 #include "report/progress.h"
@@ -90,9 +89,6 @@ struct export_engine {
 #define EXPORT_DECLARE(record) extern const struct export_engine record;
 EXPORT_ENGINES(EXPORT_DECLARE)
 #undef EXPORT_DECLARE
-
-/// The same, NULL-terminated.
-extern const struct export_engine *const mf_export_engines[];
 
 /// What is to be exported, and how.
 struct export_request {

@@ -2,7 +2,210 @@
 //
 // GROMACS up to 2019: tables of energy groups in the group scheme, cubics between rows of value and
 // −derivative. The potential stands in the column of the repulsion, whose C12 is 1 for all pairs.
-#include "export/export_gromacs_molecules.h"
+#include "export/export_engine.h"
+#include "topologies/gromacs_functions.h"
+
+#include <math.h>
+
+// Laws --------------------------------------------------------------------------------------------
+
+static const struct gromacs_function *find_function(const struct bonded_curve *curve) {
+    const struct gromacs_function *function = mf_gromacs_functions;
+    while (function->law && function->law != curve->law)
+        function++;
+    return function->law ? function : NULL;
+}
+
+/// Whether GROMACS has a law as it is: all but tables and k (1 + cos θ).
+static bool has_law(const struct bonded_curve *curve) {
+    return find_function(curve) != NULL;
+}
+
+static void print_law(const struct export_job *job, int order, int group, FILE *stream) {
+    const struct bonded_curve *curve = &job->model->molecules->group[order][group].curve;
+    const struct gromacs_function *function = find_function(curve);
+    if (function == NULL) { // its factor after the number of the table
+        fprintf(stream, " 8 %d 1", job->bonded.table[order][group].number);
+        return;
+    }
+    fprintf(stream, " %d", function->number);
+    for (int n = 0; n < GROMACS_MAX_PARAMETERS && function->parameter[n]; n++)
+        fprintf(stream, " %.10g",
+                mf_bonded_number(curve, function->parameter[n]) *
+                    gromacs_unit(function->unit[n], job->units.length, job->units.energy));
+}
+
+// Atoms -------------------------------------------------------------------------------------------
+
+/// An atom in the order of the files.
+struct atom {
+    size_t id, number; ///< the number from 1 on
+    size_t residue;    ///< from 1 on
+    const char *name;  ///< of the residue
+};
+
+typedef void visit_atom(const struct export_job *job, FILE *stream, const struct atom *atom);
+enum { ALL_TYPES = -1 };
+
+/// Visit the atoms of a type, or of all.
+static void visit(const struct export_job *job, FILE *stream, int type, visit_atom *visitor) {
+    const struct export_model *model = job->model;
+    const struct topology *topology = &model->molecules->topology;
+    size_t number = 0, residue = 0;
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
+        for (int64_t m = 0; m < kind->count; m++) {
+            residue++;
+            for (int bead = 0; bead < kind->beads; bead++) {
+                number++;
+                if (type == ALL_TYPES || kind->type[bead] == type)
+                    visitor(
+                        job, stream,
+                        &(struct atom){topology_id(kind, m, bead), number, residue, kind->name});
+            }
+        }
+    }
+    for (size_t id = 0; id < model->count; id++) {
+        const int own = mf_export_type(model, id);
+        if (topology->molecule[id] < (uint64_t)topology->molecules)
+            continue;
+        number++;
+        residue++;
+        if (type == ALL_TYPES || own == type)
+            visitor(job, stream, &(struct atom){id, number, residue, model->name[own]});
+    }
+}
+
+static void print_atom(const struct export_job *job, FILE *stream, const struct atom *atom) {
+    const struct export_model *model = job->model;
+    const size_t id = atom->id;
+    fprintf(stream, "%5zu%-5.5s%5.5s%5zu", atom->residue % 100000, atom->name,
+            model->name[mf_export_type(model, id)], atom->number % 100000);
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, "%12.7f", mf_export_place(model, d, id) * job->units.length);
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, "%12.8f", model->velocity[d][id] * export_units_velocity(&job->units));
+    fprintf(stream, "\n");
+}
+
+static void print_molecules_conf(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const double length = job->units.length;
+    fprintf(stream, "%s\n%zu\n", model->title[0] ? model->title : "beads", model->count);
+    visit(job, stream, ALL_TYPES, print_atom);
+    fprintf(stream, "%.9g %.9g %.9g\n", model->setup.box.length[0] * length,
+            model->setup.box.length[1] * length, model->setup.box.length[2] * length);
+}
+
+static void print_number(const struct export_job *job, FILE *stream, const struct atom *atom) {
+    (void)job;
+    fprintf(stream, "%zu\n", atom->number);
+}
+
+/// A group of each type, by which tables are chosen.
+static void print_index(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    fprintf(stream, "[ System ]\n");
+    visit(job, stream, ALL_TYPES, print_number);
+    for (int type = 0; type < model->types; type++) {
+        fprintf(stream, "[ %s ]\n", model->name[type]);
+        visit(job, stream, type, print_number);
+    }
+}
+
+// Topology ----------------------------------------------------------------------------------------
+
+static void print_kind(const struct export_job *job, const struct topology_kind *kind,
+                       FILE *stream) {
+    const struct export_model *model = job->model;
+    fprintf(stream, "\n[ moleculetype ]\n%s %d\n\n[ atoms ]\n", kind->name, kind->exclude);
+    for (int bead = 0; bead < kind->beads; bead++) {
+        const char *type = model->name[kind->type[bead]];
+        fprintf(stream, "%d %s 1 %.5s %.5s %d 0.0 %.9g\n", bead + 1, type, kind->name, type,
+                bead + 1, model->mass[kind->type[bead]] * job->units.mass);
+    }
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        if (kind->terms[order] > 0)
+            fprintf(stream, "\n[ %s ]\n", mf_bonded_kinds[order]->plural);
+        for (int n = 0; n < kind->terms[order]; n++) {
+            const struct topology_term *term = &kind->term[order][n];
+            for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
+                fprintf(stream, "%d ", term->bead[bead] + 1);
+            print_law(job, order, term->group, stream);
+            fprintf(stream, " ; %s\n", job->model->molecules->group[order][term->group].name);
+        }
+    }
+}
+
+/// Beads of a type that no molecule has.
+static int64_t count_single(const struct export_model *model, int type) {
+    const struct topology *topology = &model->molecules->topology;
+    int64_t count = (int64_t)mf_export_count(model, type);
+    for (int k = 0; k < topology->kinds; k++)
+        for (int bead = 0; bead < topology->kind[k].beads; bead++)
+            count -= topology->kind[k].type[bead] == type ? topology->kind[k].count : 0;
+    return count;
+}
+
+/// A single bead is a molecule whose name no kind can have.
+static void print_single(const struct export_job *job, int type, FILE *stream) {
+    const char *name = job->model->name[type];
+    fprintf(stream, "\n[ moleculetype ]\nsingle.%s 0\n\n[ atoms ]\n1 %s 1 %.5s %.5s 1 0.0 %.9g\n",
+            name, name, name, name, job->model->mass[type] * job->units.mass);
+}
+
+static void print_molecules_topology(const struct export_job *job, FILE *stream) {
+    const struct export_model *model = job->model;
+    const struct topology *topology = &model->molecules->topology;
+    fprintf(stream, "[ defaults ]\n1 1 no 1.0 1.0\n\n[ atomtypes ]\n");
+    for (int type = 0; type < model->types; type++)
+        fprintf(stream, "%s %.9g 0.0 A 0.0 1.0\n", model->name[type],
+                model->mass[type] * job->units.mass);
+    for (int k = 0; k < topology->kinds; k++)
+        print_kind(job, &topology->kind[k], stream);
+    for (int type = 0; type < model->types; type++)
+        if (count_single(model, type) > 0)
+            print_single(job, type, stream);
+    fprintf(stream, "\n[ system ]\nmolecules\n\n[ molecules ]\n");
+    for (int k = 0; k < topology->kinds; k++)
+        fprintf(stream, "%s %lld\n", topology->kind[k].name, (long long)topology->kind[k].count);
+    for (int type = 0; type < model->types; type++)
+        if (count_single(model, type) > 0)
+            fprintf(stream, "single.%s %lld\n", model->name[type],
+                    (long long)count_single(model, type));
+}
+
+// Tables ------------------------------------------------------------------------------------------
+
+static enum status write_bonded_table(const struct export_job *job, int order,
+                                      const struct export_bonded_table *table) {
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    const double unit = kind->is_length ? job->units.length : 1 / kind->scale;
+    struct output output;
+    char path[OUTPUT_PATH_SIZE];
+    snprintf(path, sizeof path, "%.3800s/table_%c%d.xvg", job->folder, kind->name[0],
+             table->number);
+    TRY(mf_output_open(&output, path));
+    fprintf(output.stream, "# %s, energy [kJ/mol], -derivative\n",
+            kind->is_length ? "r [nm]" : "angle [degrees]");
+    for (size_t k = 0; k < job->bonded.rows; k++)
+        fprintf(output.stream, "%.12e %.12e %.12e\n", table->q[k] * unit,
+                table->energy[k] * job->units.energy, -table->slope[k] * job->units.energy / unit);
+    return mf_output_commit(&output);
+}
+
+/// Write conf.gro, topol.top, index.ndx with a group for each type, and the tables of laws.
+static enum status write_molecules(const struct export_job *job) {
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (int g = 0; g < job->model->molecules->groups[order]; g++)
+            if (job->bonded.table[order][g].q)
+                TRY(write_bonded_table(job, order, &job->bonded.table[order][g]));
+    TRY(mf_export_file(job, "conf.gro", print_molecules_conf));
+    TRY(mf_export_file(job, "index.ndx", print_index));
+    return mf_export_file(job, "topol.top", print_molecules_topology);
+}
+
+// The folder --------------------------------------------------------------------------------------
 
 enum { EXTENSION_NM = 1 }; ///< that GROMACS wants after the cutoff
 
@@ -105,7 +308,7 @@ static void print_settings(const struct export_job *job, FILE *stream) {
 static enum status write(const struct export_job *job) {
     TRY(write_tables(job));
     if (job->model->molecules) {
-        TRY(mf_export_gromacs_molecules(job));
+        TRY(write_molecules(job));
     } else {
         TRY(mf_export_file(job, "conf.gro", print_conf));
         TRY(mf_export_file(job, "topol.top", print_topology));
@@ -141,7 +344,7 @@ const struct export_engine mf_export_gromacs = {
     .one_cutoff = true,
     .pair_name = name_pair,
     .molecules = true,
-    .has_law = mf_export_gromacs_has_law,
+    .has_law = has_law,
     .write = write,
     .explain = explain,
 };

@@ -101,13 +101,39 @@ static void add_forces(struct sums *sums, const struct stretch *stretch, size_t 
     sums->laplacian += 2 * laplacian;
 }
 
+/// Thickness of the shell inside the cutoff in which pairs are counted, relative to the cutoff.
+static const double shell = 0.01;
+
+static double shell_begin(const struct table *potential, int pair) {
+    return (1 - shell) * table_cutoff(potential, pair);
+}
+
+/// What a pair in the shell says of the density of pairs at the cutoff, where Φ = 0: those nearer
+/// have less room, and are rarer or more frequent by exp(−Φ/k_B T).
+static double density_at_cutoff(const struct table *potential, int pair, double r,
+                                double temperature, int dimensions) {
+    const double cutoff = table_cutoff(potential, pair);
+    double phi;
+    mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
+    return pow(cutoff / r, dimensions - 1) * exp(phi / temperature) / (shell * cutoff);
+}
+
+/// Σ∇²U of the cutoff: the slope jumps to 0 there, which is a Dirac peak of Φ'' seen by the pairs
+/// that are just there, of which `density` are so many in a length [1/λ].
+static double edge_laplacian(const struct table *potential, int pair, double density) {
+    double slope;
+    mf_table_evaluate_pair(potential, pair, table_cutoff(potential, pair) * (1 - 1e-9), NULL,
+                           &slope, NULL);
+    return -2 * slope * density;
+}
+
 static void add_density(struct sums *sums, const struct stretch *stretch, int pair) {
-    const double begin = mf_reference_shell_begin(sums->potential, pair);
+    const double begin = shell_begin(sums->potential, pair);
     for (int n = 0; n < stretch->count; n++)
         if (stretch->packed[n] > begin * begin)
             sums->density[pair] +=
-                mf_reference_density_at_cutoff(sums->potential, pair, sqrt(stretch->packed[n]),
-                                               sums->temperature, sums->particles->box.dimensions);
+                density_at_cutoff(sums->potential, pair, sqrt(stretch->packed[n]),
+                                  sums->temperature, sums->particles->box.dimensions);
 }
 
 static void add_stretch(struct sums *sums, const struct composition *composition, size_t i,
@@ -138,7 +164,7 @@ enum status mf_configurational(const struct table *potential, const struct compo
         }
     *laplacian = sums.laplacian;
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
-        *laplacian += mf_reference_edge_laplacian(potential, pair, sums.density[pair]);
+        *laplacian += edge_laplacian(potential, pair, sums.density[pair]);
     *squares = 0;
     for (size_t k = 0; k < 3 * particles->count; k++)
         *squares += force[k] * force[k];

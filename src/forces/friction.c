@@ -8,14 +8,6 @@
 
 #include <math.h>
 
-struct friction_factors mf_friction_factors_of(const struct friction_method *method, double omega,
-                                               double time_step, double temperature) {
-    const double d = method->damping(omega, time_step);
-    const double square =
-        method->square ? method->square(time_step, temperature) * d * (1 - method->bound * d) : 1;
-    return (struct friction_factors){d, sqrt(square)};
-}
-
 enum status mf_friction_init(struct friction *friction, const struct table *table, double time_step,
                              double temperature, const struct friction_method *method) {
     *friction =

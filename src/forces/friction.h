@@ -30,12 +30,6 @@ struct friction_method {
     double bound;                                           ///< B
     bool uniform;                                           ///< ζ is, with variance 1, not normal
 };
-struct friction_factors {
-    double damping;
-    double amplitude; ///< standard deviation of the kick [λ/τ]
-};
-struct friction_factors mf_friction_factors_of(const struct friction_method *method, double omega,
-                                               double time_step, double temperature);
 
 enum { FRICTION_WORK = 4 };
 

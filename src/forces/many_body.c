@@ -217,7 +217,7 @@ struct spread {
 };
 
 /// w' and w'' at r. At the cutoff w' may end abruptly: a Dirac peak of w'', spread over a shell
-/// inside, as that of Φ is (reference_forces.h).
+/// inside, as that of Φ is (configurational.c).
 static double curvature_at(const struct weight_table *weight, double r, double *slope) {
     static const double shell = 0.01;
     const double width = shell * weight_cutoff(weight);

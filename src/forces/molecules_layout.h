@@ -8,7 +8,24 @@
 /// block, and blocks are the same for any number of threads.
 #pragma once
 
-#include "forces/molecules_motifs.h"
+#include "forces/bonded.h"
+#include "forces/molecules.h"
+/// Motifs are the pieces of molecules whose terms are worked on together (forces/bonded.h). A small
+/// molecule is one motif: its beads and the terms among them. A large one has several, and a bead
+/// where they meet is in both. Or a motif is a single term, which a molecule has many times.
+struct molecules_motif {
+    int beads;
+    int copies; ///< in a molecule: 1, or as many as there are terms of one group
+    int *bead;  ///< of the molecule, shape [copies, beads]
+    int terms[BONDED_KINDS][MOLECULES_MAX_GROUPS];
+    int *term_bead; ///< numbers in `bead` of a copy: the terms of one group after the other
+};
+
+/// The motifs of a kind of molecule. A zeroed one has none.
+struct molecules_motifs {
+    int count;
+    struct molecules_motif *motif;
+};
 
 enum { MOLECULES_MAX_BLOCKS = 64 };
 

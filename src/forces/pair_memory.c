@@ -303,19 +303,6 @@ enum status mf_pair_memory_follow(struct pair_memory *memory, const struct parti
     return STATUS_OK;
 }
 
-double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables) {
-    const struct pair_memory_pairs *pairs = &memory->pairs;
-    double energy = 0;
-    *variables = 0;
-    for (int k = 0; k < memory->variables; k++)
-        for (size_t n = 0; n < pairs->count; n++)
-            if (!isnan(pairs->value[0][n])) {
-                energy += 0.5 * (double)pairs->value[k][n] * pairs->value[k][n];
-                ++*variables;
-            }
-    return memory->unit * memory->unit * energy;
-}
-
 size_t mf_pair_memory_spans(struct pair_memory *memory, struct memory_span *spans) {
     struct pair_memory_pairs *pairs = &memory->pairs;
     const size_t count = pairs->count;

@@ -127,10 +127,6 @@ enum status mf_pair_memory_follow(struct pair_memory *memory, const struct parti
 void mf_pair_memory_sweep(struct pair_memory *memory, struct particles *particles, uint64_t step,
                           struct transfer *transfer);
 
-/// ½ Σ z² of the pairs in range [k_B T_0], and their number of variables: what the extended energy
-/// adds to that of the particles.
-double mf_pair_memory_energy(const struct pair_memory *memory, size_t *variables);
-
 /// @name Restart
 /// The first span is `pairs.count`: read it before the others and call mf_pair_memory_reserve,
 /// since their lengths depend on it. Afterwards the pairs follow the list again.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/import_settings.h"
 
+#include "base/names.h"
 #include "io/votca.h"
 #include "targets/target_bonded.h"
 #include "trajectory/words.h"
@@ -27,7 +28,7 @@ static enum status read_number(const struct import_settings *settings,
                        element->text);
 }
 
-/// A name of at most `size` − 1 letters, digits and _.
+/// A name of at most `size` − 1 characters.
 static enum status read_name(const struct import_settings *settings,
                              const struct xml_element *parent, const char *key, char *name,
                              size_t size) {
@@ -36,8 +37,8 @@ static enum status read_name(const struct import_settings *settings,
         return mf_xml_fail(&settings->document, parent, "<%s> is missing", key);
     if (strlen(element->text) >= size || !mf_topology_is_name(element->text))
         return mf_xml_fail(&settings->document, element,
-                           "\"%.60s\" can be no name: at most %zu letters, digits, _ and -",
-                           element->text, size - 1);
+                           "\"%.60s\": expected a name of " NAMES_OF_OTHERS, element->text,
+                           (int)size - 1);
     memcpy(name, element->text, strlen(element->text) + 1);
     return STATUS_OK;
 }
@@ -120,7 +121,8 @@ static enum status read_pair(struct import_settings *settings, const struct xml_
                       sizeof pair->type[k]));
         if (!mf_composition_is_name(pair->type[k]))
             return mf_xml_fail(&settings->document, element,
-                               "\"%s\" can be no type: letters, digits and _", pair->type[k]);
+                               "\"%s\": expected a type name of " NAMES_OF_TYPE, pair->type[k],
+                               COMPOSITION_NAME_SIZE - 1);
     }
     TRY(check_new_pair(settings, pair));
     TRY(check_name(settings, element, pair->name));

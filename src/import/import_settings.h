@@ -43,11 +43,3 @@ void mf_import_settings_clear(struct import_settings *settings);
 /// A file that stands beside the settings.
 void mf_import_settings_path(const struct import_settings *settings, const char *name,
                              char path[OUTPUT_PATH_SIZE]);
-
-/// Print a line, to whom watches or on stdout: it is what the command is asked for.
-void mf_import_print(struct progress *progress, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-/// Print a line for each reason why something that is set is left out.
-void mf_import_settings_print_rest(const struct import_settings *settings,
-                                   struct progress *progress);

@@ -2,13 +2,134 @@
 #include "import/import_votca.h"
 
 #include "base/memory.h"
+#include "import/import_settings.h"
 #include "io/json_write.h"
 #include "io/text_file.h"
 #include "io/tracked_files.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { LIST_SIZE = 600 };
+
+/// Print a line, to whom watches or on stdout: it is what the command is asked for.
+__attribute__((format(printf, 2, 3))) static void say(struct progress *progress, const char *format,
+                                                      ...) {
+    char text[LIST_SIZE + OUTPUT_PATH_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (progress->watcher)
+        mf_progress_print(progress, "%s", text);
+    else if (!progress->quiet)
+        printf("%s\n", text);
+}
+
+// What is not taken -------------------------------------------------------------------------------
+
+/// The first line whose path begins that of an element says what becomes of it.
+static const struct {
+    const char *path, *reason; ///< NULL: it is read
+} fates[] = {
+    {"non-bonded.name", NULL},
+    {"non-bonded.type", NULL},
+    {"non-bonded.max", NULL},
+    {"non-bonded.inverse.target", NULL},
+    {"non-bonded.inverse.optimizer.rdf.target", NULL},
+    {"bonded.name", NULL},
+    {"bonded.inverse.target", NULL},
+    {"bonded.inverse.gromacs.table", NULL},
+    {"inverse.kBT", NULL},
+    {"non-bonded.min", "ranges and bins are those of the targets"},
+    {"non-bonded.step", "ranges and bins are those of the targets"},
+    {"bonded.min", "ranges and bins are those of the targets"},
+    {"bonded.max", "ranges and bins are those of the targets"},
+    {"bonded.step", "ranges and bins are those of the targets"},
+    {"non-bonded.inverse.p_target", "it is a target only with <post_update>pressure"},
+    {"non-bonded.inverse.do_potential", "all that has a target is found at once"},
+    {"bonded.inverse.do_potential", "all that has a target is found at once"},
+    {"non-bonded.inverse.post_", "a fit needs no scripts between its steps"},
+    {"bonded.inverse.post_", "a fit needs no scripts between its steps"},
+    {"inverse.p_target", "it is a target only inside <non-bonded><inverse>, with "
+                         "<post_update>pressure"},
+    {"inverse.method", "the method is chosen; \"method\": {\"name\": …} asks for another"},
+    {"inverse.iie", "the method is chosen; \"method\": {\"name\": …} asks for another"},
+    {"non-bonded.inverse.imc", "imc takes its regularisation from the noise"},
+    {"bonded.inverse.imc", "imc takes its regularisation from the noise"},
+    {"inverse.imc", "imc takes its regularisation from the noise"},
+    {"inverse.iterations_max", "a fit ends when it has converged"},
+    {"inverse.convergence_check", "a fit ends when it has converged"},
+    {"inverse.scale", "a fit ends when it has converged"},
+    {"inverse.average", "a fit ends when it has converged"},
+    {"non-bonded.inverse.optimizer.density", "profiles of the density are no targets"},
+    {"non-bonded.inverse.optimizer", "potentials are tables; laws with parameters: \"unknowns\""},
+    {"inverse.optimizer", "potentials are tables; laws with parameters: \"unknowns\""},
+    {"non-bonded.re", "potentials are tables; splines: \"method\": {\"name\": "
+                      "\"relative-entropy\"}"},
+    {"non-bonded.fmatch", "force matching is not here"},
+    {"bonded.fmatch", "force matching is not here"},
+    {"fmatch", "force matching is not here"},
+    {"non-bonded.inverse", "no other program runs in between"},
+    {"bonded.inverse", "no other program runs in between"},
+    {"inverse", "no other program runs in between"},
+    {"nbsearch", "no other program runs in between"},
+    {"", "not known"},
+};
+enum { FATES = sizeof fates / sizeof *fates, PATH_SIZE = 256 };
+
+struct rest {
+    const struct import_settings *settings;
+    char list[FATES][LIST_SIZE]; ///< of each line that is the first of its reason: paths
+};
+
+static int first_of_reason(int fate) {
+    int first = 0;
+    while (fates[first].reason == NULL || strcmp(fates[first].reason, fates[fate].reason) != 0)
+        first++;
+    return first;
+}
+
+/// Add a path, as far as one name below that of its line, to a list in which it is not yet.
+static void add(char list[LIST_SIZE], const char *path, const char *of_line) {
+    char item[PATH_SIZE];
+    const size_t above = strlen(of_line);
+    const char *const below = strlen(path) > above ? strchr(path + above + 1, '.') : NULL;
+    snprintf(item, sizeof item, "%.*s", (int)(below ? (size_t)(below - path) : strlen(path)), path);
+    const char *const known = strstr(list, item);
+    const size_t length = strlen(list);
+    if (known == NULL || strchr(", ", known[strlen(item)]) == NULL)
+        snprintf(list + length, LIST_SIZE - length, "%s%s", length ? ", " : "", item);
+}
+
+static void collect(struct rest *rest, const struct xml_element *element, const char *path) {
+    char inner[PATH_SIZE];
+    int fate = 0;
+    for (const struct xml_element *child = element->child; child; child = child->next) {
+        snprintf(inner, sizeof inner, "%.180s%s%.60s", path, path[0] ? "." : "", child->name);
+        collect(rest, child, inner);
+    }
+    if (element->child || element->text[0] == '\0' || element == rest->settings->pressure)
+        return;
+    while (strncmp(path, fates[fate].path, strlen(fates[fate].path)) != 0)
+        fate++;
+    if (fates[fate].reason)
+        add(rest->list[first_of_reason(fate)], path, fates[fate].path);
+}
+
+/// Print a line for each reason why something that is set is left out.
+static void print_rest(const struct import_settings *settings, struct progress *progress) {
+    struct rest rest = {.settings = settings};
+    collect(&rest, settings->document.root, "");
+    for (int k = 0; k < FATES; k++)
+        if (rest.list[k][0])
+            say(progress, "left out: %s: %s", rest.list[k], fates[k].reason);
+}
+
+// The run file ------------------------------------------------------------------------------------
 
 struct job {
     const struct import_request *request;
@@ -222,8 +343,8 @@ static void print_masses(const struct import_system *system, struct progress *pr
     for (int type = 0; type < system->beads.types; type++) {
         const struct import_mass *const mass = &system->mass[type];
         if (mass->high - mass->low > rounding)
-            mf_import_print(progress, "masses of type %s differ (%g to %g): their mean is taken",
-                            system->beads.name[type], mass->low, mass->high);
+            say(progress, "masses of type %s differ (%g to %g): their mean is taken",
+                system->beads.name[type], mass->low, mass->high);
     }
 }
 
@@ -232,28 +353,25 @@ static void print_read(const struct job *job) {
     const struct import_settings *const settings = &job->settings;
     const struct import_system *const system = &job->system;
     for (size_t k = 0; k < settings->pairs; k++)
-        mf_import_print(progress, "read: %s: g(r) of %s, to %g nm", settings->pair[k].name,
-                        settings->pair[k].target->text, settings->pair[k].cutoff);
+        say(progress, "read: %s: g(r) of %s, to %g nm", settings->pair[k].name,
+            settings->pair[k].target->text, settings->pair[k].cutoff);
     for (size_t k = 0; k < settings->groups; k++) {
         const struct import_group *const group = &settings->group[k];
-        mf_import_print(progress, "read: %s: %s %s %s", group->name,
-                        mf_bonded_kinds[group->order]->name,
-                        group->target ? "with the distribution of" : "with the known potential",
-                        group->target ? group->target->text : group->table_file);
+        say(progress, "read: %s: %s %s %s", group->name, mf_bonded_kinds[group->order]->name,
+            group->target ? "with the distribution of" : "with the known potential",
+            group->target ? group->target->text : group->table_file);
     }
-    mf_import_print(progress, "read: temperature %g K", settings->temperature);
+    say(progress, "read: temperature %g K", settings->temperature);
     if (settings->pressure)
-        mf_import_print(progress, "read: pressure %s bar", settings->pressure->text);
-    mf_import_print(progress, "read: box %g %g %g nm of %s", system->box[0], system->box[1],
-                    system->box[2], system->box_file[0] ? system->box_file : "--box");
+        say(progress, "read: pressure %s bar", settings->pressure->text);
+    say(progress, "read: box %g %g %g nm of %s", system->box[0], system->box[1], system->box[2],
+        system->box_file[0] ? system->box_file : "--box");
     for (int type = 0; type < system->beads.types; type++)
-        mf_import_print(progress, "read: %lld beads %s of %s", (long long)system->beads.count[type],
-                        system->beads.name[type],
-                        system->beads_file[0] ? system->beads_file : "--count");
+        say(progress, "read: %lld beads %s of %s", (long long)system->beads.count[type],
+            system->beads.name[type], system->beads_file[0] ? system->beads_file : "--count");
     print_masses(system, progress);
-    mf_import_settings_print_rest(settings, progress);
-    mf_import_print(progress, "mesofit fit %s/run.json --explain tells what a fit will do",
-                    job->own.folder);
+    print_rest(settings, progress);
+    say(progress, "mesofit fit %s/run.json --explain tells what a fit will do", job->own.folder);
 }
 
 // All of it ---------------------------------------------------------------------------------------

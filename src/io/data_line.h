@@ -3,6 +3,7 @@
 /// commas or semicolons.
 #pragma once
 
+#include <stdint.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -57,3 +58,31 @@ bool mf_data_word_is_number(const struct data_word *word, bool commas, char *dec
 
 /// Whether it begins as a number does, or is "nan" or "inf".
 bool mf_data_word_is_numeric(const struct data_word *word);
+
+/// Columns that may be text.
+enum { DATA_HEADING_MAX = 64 };
+
+/// Make one line of names, "r[nm]\tg", of the last lines before the rows, comments or not.
+///
+/// A unit may stand in brackets or, if it is one that is known, in parentheses, or for all columns
+/// in the last line, below the names: "r (nm)", "r [nm]" or "nm" below "r" all become "r[nm]".
+/// @param[in]  before, last  lines, or zeros
+/// @param[in]  separator     of the rows
+/// @param[in]  label         a bit for each column of text, whose name is left out
+/// @param[in]  columns       of the rows, with those of text
+/// @param[out] heading       large enough for both lines and 2 characters more
+/// Tested: test_data_table_units.
+void mf_data_heading_make(const struct data_line *before, const struct data_line *last,
+                          char separator, uint64_t label, size_t columns, char *heading);
+
+enum data_lammps_kind {
+    DATA_LAMMPS_NONE,
+    DATA_LAMMPS_LAW,     ///< "N 98 R 2.3 12.0": a section of pair_style, bond_style, … table
+    DATA_LAMMPS_AVERAGE, ///< "60000 500": a step and rows, of fix ave/time in mode vector
+};
+
+/// Put blanks in place of the numbers of rows, and of the line of an average, so that r and its
+/// values are left. Nothing changes where rows are not numbered from 1 to what the line says.
+/// @param[out] again  line, from 1, at which another section begins, or 0
+/// Tested: test_data_table.
+enum data_lammps_kind mf_data_lammps_strip(char *text, size_t *again);

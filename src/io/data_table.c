@@ -2,7 +2,7 @@
 #include "io/data_table.h"
 
 #include "base/memory.h"
-#include "io/data_heading.h"
+#include "io/data_line.h"
 #include "io/output.h"
 #include "io/text_file.h"
 

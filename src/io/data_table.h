@@ -13,7 +13,7 @@
 #pragma once
 
 #include "base/status.h"
-#include "io/data_lammps.h"
+#include "io/data_line.h"
 #include "io/units_scale.h"
 
 #include <stdbool.h>

@@ -5,7 +5,6 @@
 #include "base/nearest.h"
 #include "base/visible.h"
 #include "io/json_document.h"
-#include "io/json_item.h"
 #include "io/json_parse.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -296,11 +295,6 @@ void mf_json_retired(struct json_object *object, const char *old, const char *fi
         fault_retired(object, old, reason);
 }
 
-void mf_json_renamed(struct json_object *object, const char *old, const char *today) {
-    if (refuses(object, old))
-        mf_json_fault(object, old, "is now called \"%s\"", today);
-}
-
 const char *mf_json_key(const struct json_object *object, size_t n) {
     const cJSON *member;
     cJSON_ArrayForEach(member, (const cJSON *)object->item) {
@@ -313,15 +307,6 @@ const char *mf_json_key(const struct json_object *object, size_t n) {
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason) {
     if (refuses(object, key))
         mf_json_fault(object, key, "unknown key: %s", reason);
-}
-
-bool mf_json_refuse_choice(struct json_object *object, const char *key, const char *old,
-                           const char *reason) {
-    const char *given = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object->item, key));
-    const bool refused = given && strcmp(given, old) == 0;
-    if (refused)
-        mf_json_fault(object, key, "\"%s\" is of an earlier version: %s", old, reason);
-    return refused;
 }
 
 /// A key that is nearly that of what is missing tells why it is.

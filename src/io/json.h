@@ -87,9 +87,6 @@ int mf_json_count(const struct json_object *object, const char *key);
 /// The text lives with the document. Counts as nothing: the reader asks for the keys that it takes.
 const char *mf_json_key(const struct json_object *object, size_t n);
 
-/// Refuse the name that a key had in an earlier version, and say its name of today.
-void mf_json_renamed(struct json_object *object, const char *old, const char *today);
-
 /// Refuse a key of an earlier version, if it is present, with the reason; but not one that says
 /// what is so now, as in what earlier versions have written. Several in a document are one fault.
 /// @param[in] fixed  the text or the number that it must be, or NULL if it can be none
@@ -99,11 +96,6 @@ void mf_json_retired(struct json_object *object, const char *old, const char *fi
 
 /// Refuse a key that has no place here, if it is present, with the reason. Tested: test_json.
 void mf_json_refuse(struct json_object *object, const char *key, const char *reason);
-
-/// Refuse the text that a choice had in an earlier version, if it is there, with what to write now.
-/// Returns whether it was. Tested: test_bad_input.
-bool mf_json_refuse_choice(struct json_object *object, const char *key, const char *old,
-                           const char *reason);
 
 /// The number, or the list of up to `max` numbers, at `key` as they stand there; 0 if there are
 /// none. Counts as nothing, and faults are left to the reader. Tested: test_units.

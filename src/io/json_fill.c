@@ -6,7 +6,6 @@
 #include "io/json_document.h"
 
 #include <cJSON.h>
-
 #include <string.h>
 
 static enum status add(const char *file, cJSON *root, const char *object,
@@ -46,4 +45,14 @@ enum status mf_json_fill(const char *file, const char *object, const struct json
 done:
     cJSON_free(printed);
     return status;
+}
+
+void mf_json_drop(const struct json_object *root, const char *parent, const char *child,
+                  const char *key) {
+    // A view is constant, its document is not.
+    cJSON *const above = cJSON_GetObjectItemCaseSensitive((cJSON *)(uintptr_t)root->item, parent);
+    cJSON *const object = cJSON_GetObjectItemCaseSensitive(above, child);
+    cJSON_DeleteItemFromObjectCaseSensitive(object, key);
+    if (cJSON_IsObject(object) && object->child == NULL)
+        cJSON_DeleteItemFromObjectCaseSensitive(above, child);
 }

@@ -2,6 +2,7 @@
 /// @file What a JSON file lacks, put into its text before it is read.
 #pragma once
 
+#include "io/json.h"
 #include "base/status.h"
 
 #include <stddef.h>
@@ -18,3 +19,8 @@ struct json_filling {
 /// cli/test_fit_target.
 enum status mf_json_fill(const char *file, const char *object, const struct json_filling *filling,
                          size_t count, char **text) MUST_USE;
+
+/// Take the member `key` out of the object `parent.child` of `root`, and the child, too, if nothing
+/// else is in it. What is not there is fine.
+void mf_json_drop(const struct json_object *root, const char *parent, const char *child,
+                  const char *key);

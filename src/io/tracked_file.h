@@ -28,3 +28,7 @@ bool mf_tracked_file_is_link(int place, const char *name);
 
 /// Remove a file, or a folder unless something is in it; 0, or the number of the error.
 int mf_tracked_file_remove(int place, const char *name);
+
+/// Remove what killed processes had begun of the files of a list, in the folder and in those that
+/// it names.
+void mf_tracked_file_remove_partial(const struct manifest *list);

@@ -5,7 +5,6 @@
 #include "base/process_lock.h"
 #include "base/ranks.h"
 #include "io/tracked_file.h"
-#include "io/partial_file.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -208,7 +207,7 @@ static enum status remove_earlier(struct tracked_files *own, struct manifest_ent
 
 enum status mf_tracked_files_remove_earlier(struct tracked_files *own) {
     struct manifest *list = &own->list;
-    mf_partial_file_remove(&own->list);
+    mf_tracked_file_remove_partial(&own->list);
     for (int folders = 0; folders < 2; folders++)
         for (size_t k = list->count; k-- > 0;) // a folder came before those in it
             TRY(remove_earlier(own, &list->entry[k], folders));
@@ -225,7 +224,7 @@ enum status mf_tracked_files_resume(struct tracked_files *own, uint64_t digest) 
         TRY(mf_manifest_keep(&own->list));
     else if (earlier)
         return mf_tracked_files_remove_earlier(own);
-    mf_partial_file_remove(&own->list);
+    mf_tracked_file_remove_partial(&own->list);
     return STATUS_OK;
 }
 
@@ -292,7 +291,7 @@ void mf_tracked_files_close(struct tracked_files *own) {
 
 void mf_tracked_files_remove_all(struct tracked_files *own) {
     struct manifest *list = &own->list;
-    mf_partial_file_remove(&own->list);
+    mf_tracked_file_remove_partial(&own->list);
     for (int folders = 0; folders < 2; folders++)
         for (size_t k = list->count; k-- > 0;)
             if (!list->entry[k].gone && mf_tracked_file_is_folder(list->entry[k].name) == folders)

@@ -1,9 +1,90 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/units.h"
 
-#include "io/units_beads.h"
+#include "io/json.h"
+#include "io/json_list.h"
 
 #include <math.h>
+
+// How many beads a scene has ----------------------------------------------------------------------
+
+/// Beads that were found so far.
+struct found {
+    struct json_object mass; ///< of the types
+    double count, sum;       ///< sum of the masses
+};
+
+/// An object if one stands there: what else does is the reader's to say.
+static struct json_object peek(const struct json_object *parent, const char *key) {
+    struct json_object looked = *parent;
+    return mf_json_is_object(parent, key) ? mf_json_child(&looked, key, false)
+                                          : (struct json_object){.document = parent->document};
+}
+
+/// A number, or the middle of the range in which it is looked for; 0 if there is none.
+static double find_mass(const struct json_object *parent, const char *key) {
+    const struct json_object range = peek(parent, key);
+    double mass, minimum, maximum;
+    if (mf_json_numbers(parent, key, &mass, 1) == 1)
+        return mass;
+    if (mf_json_numbers(&range, "minimum", &minimum, 1) == 1 &&
+        mf_json_numbers(&range, "maximum", &maximum, 1) == 1)
+        return 0.5 * (minimum + maximum);
+    return 0;
+}
+
+static void add(struct found *found, const char *type, double count) {
+    found->count += count;
+    found->sum += count * find_mass(&found->mass, type);
+}
+
+/// "beads" of a molecule or a chain: the type of each.
+static void add_beads(struct found *found, const struct json_object *object, double molecules) {
+    const int beads = mf_json_count(object, "beads");
+    for (int k = 0; k < beads; k++) {
+        const char *const type = mf_json_list_text(object, "beads", (size_t)k);
+        if (type)
+            add(found, type, molecules);
+    }
+}
+
+static void add_molecules(struct found *found, const struct json_object *molecules) {
+    const char *kind;
+    for (size_t n = 0; (kind = mf_json_key(molecules, n)); n++) {
+        const struct json_object molecule = peek(molecules, kind);
+        const struct json_object chain = peek(&molecule, "chain");
+        const char *const type = mf_json_list_text(&chain, "type", 0);
+        double count, length;
+        if (mf_json_numbers(&molecule, "count", &count, 1) != 1)
+            continue;
+        add_beads(found, &molecule, count);
+        add_beads(found, &chain, count);
+        if (type && mf_json_numbers(&chain, "length", &length, 1) == 1)
+            add(found, type, count * length);
+    }
+}
+
+/// How many beads there are, single ones and those of molecules that stand in the scene itself; 0
+/// if a fault will tell why it is not known.
+static double find_beads(const struct json_object *scene, double *mean_mass) {
+    const struct json_object particles = peek(scene, "particles");
+    const struct json_object types = peek(&particles, "types");
+    const struct json_object molecules = peek(scene, "molecules");
+    struct found found = {.mass = peek(&particles, "mass")};
+    const char *type;
+    double number;
+    for (size_t n = 0; (type = mf_json_key(&types, n)); n++)
+        if (mf_json_numbers(&types, type, &number, 1) == 1)
+            add(&found, type, number);
+    mf_json_numbers(&particles, "count", &found.count, 1);
+    add_molecules(&found, &molecules);
+    *mean_mass = find_mass(&particles, "mass");
+    if (*mean_mass == 0 && found.count > 0)
+        *mean_mass = found.sum / found.count;
+    return found.count;
+}
+
+// Units of a file ---------------------------------------------------------------------------------
 
 #define MEMBER(name) .offset = offsetof(struct units, name)
 const struct field mf_units_fields[] = {
@@ -82,7 +163,7 @@ static double find_length(const struct json_object *scene, double beads, int kin
 /// Fill in what the file does not say.
 static void complete(struct system *system, struct json_object *scene) {
     double mean_mass;
-    const double beads = mf_units_beads(scene, &mean_mass);
+    const double beads = find_beads(scene, &mean_mass);
     if (isnan(system->length))
         system->length = find_length(scene, beads, system->kind);
     system->massless = isnan(system->mass) && !(mean_mass > 0);
@@ -109,7 +190,7 @@ static void complete(struct system *system, struct json_object *scene) {
 /// "units": "nm-ps", or an object with "system"; false if the file is reduced.
 static bool read_system(struct system *system, struct json_object *root) {
     if (mf_json_is_object(root, "units")) {
-        struct json_object looked = mf_units_peek(root, "units");
+        struct json_object looked = peek(root, "units");
         if (!mf_json_has(&looked, "system"))
             return false;
         struct json_object object = mf_json_child(root, "units", false);

@@ -1,16 +1,167 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesofit/fit.h"
 
+#include "defaults/fit_file.h"
+#include "problem/parametrisation.h"
 #include "base/memory.h"
+#include "base/status.h"
 #include "defaults/fit_base.h"
 #include "defaults/fit_check.h"
-#include "library/fit.h"
-#include "library/fit_text.h"
 #include "library/guard.h"
 #include "library/memory_files.h"
 #include "library/scene_text.h"
+#include "matching/population.h"
+#include "mesofit/fit.h"
 
+#include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <stdatomic.h>
+
+struct mesofit_fit {
+    struct fit_file file;
+    struct unknowns unknowns;
+    struct parametrisation parametrisation; ///< of a method of the kind INVERSE_MATCHING
+    void *state;                            ///< of file.method
+    struct inverse_step step;
+    bool iterated;
+    atomic_bool cancel;
+    mesofit_fit_progress *progress;
+    void *context;
+};
+
+// The text of a run file, with tables in memory ---------------------------------------------------
+
+enum { FIT_TEXT_TABLES = 3 };
+
+struct fit_text {
+    char *text;
+    struct mesofit_table table[FIT_TEXT_TABLES];
+    size_t tables;
+    double *values[FIT_TEXT_TABLES]; ///< of the tables
+};
+
+struct mesofit_fit_options mesofit_fit_options_default(void) {
+    return (struct mesofit_fit_options){
+        .scene = mesofit_scene_default(), .method = "imc", .find_potential = 1};
+}
+
+/// A new table, whose values are zero.
+static enum status add_table(struct fit_text *run, const char *name, size_t rows, size_t columns,
+                             double **values) {
+    enum status status = STATUS_OK;
+    NEW_ARRAY(*values, rows * columns);
+    run->values[run->tables] = *values;
+    run->table[run->tables++] = (struct mesofit_table){name, rows, columns, *values};
+done:
+    return status;
+}
+
+static enum status add_rdf(struct fit_text *run, const struct mesofit_fit_options *options) {
+    const size_t columns = options->rdf.error ? 3 : 2;
+    double *values;
+    if (options->rdf.r == NULL || options->rdf.g == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "rdf: r and g are required");
+    TRY(add_table(run, "rdf", options->rdf.count, columns, &values));
+    for (size_t k = 0; k < options->rdf.count; k++) {
+        values[k * columns] = options->rdf.r[k];
+        values[k * columns + 1] = options->rdf.g[k];
+        if (options->rdf.error)
+            values[k * columns + 2] = options->rdf.error[k];
+    }
+    return STATUS_OK;
+}
+
+/// Times, then a column for each bin.
+static enum status add_matrix(struct fit_text *run, const char *name,
+                              const struct mesofit_fit_options *options, const double *from) {
+    const size_t times = options->etd.times, bins = options->etd.bins, columns = bins + 1;
+    double *values;
+    TRY(add_table(run, name, times, columns, &values));
+    for (size_t t = 0; t < times; t++) {
+        values[t * columns] = (double)t * options->etd.interval;
+        memcpy(values + t * columns + 1, from + t * bins, bins * sizeof *values);
+    }
+    return STATUS_OK;
+}
+
+static enum status add_tables(struct fit_text *run, const struct mesofit_fit_options *options) {
+    if (options->rdf.count > 0)
+        TRY(add_rdf(run, options));
+    if (options->etd.times == 0)
+        return STATUS_OK;
+    if (options->etd.survival == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "etd: survival is required");
+    TRY(add_matrix(run, "etd", options, options->etd.survival));
+    return options->etd.error ? add_matrix(run, "etd_error", options, options->etd.error)
+                              : STATUS_OK;
+}
+
+static void write_target(const struct mesofit_fit_options *options, FILE *stream) {
+    const char *separator = "";
+    fputs("\"target\": {", stream);
+    if (options->rdf.count > 0) {
+        fputs("\"rdf\": {\"file\": \"rdf\"}", stream);
+        separator = ", ";
+    }
+    if (options->etd.times > 0)
+        fprintf(stream,
+                "%s\"etd\": {\"file\": \"etd\"%s, \"r_minimum\": %.17g, \"r_maximum\": %.17g}",
+                separator, options->etd.error ? ", \"error_file\": \"etd_error\"" : "",
+                options->etd.r_minimum, options->etd.r_maximum);
+    fputs("}, ", stream);
+}
+
+static void write_unknowns(const struct mesofit_fit_options *options, FILE *stream) {
+    fputs("\"unknowns\": {", stream);
+    if (options->find_potential)
+        fprintf(stream, "\"potential\": %s", options->potential ? options->potential : "{}");
+    if (options->find_friction)
+        fprintf(stream, "%s\"omega\": %s", options->find_potential ? ", " : "",
+                options->friction ? options->friction : "{}");
+    fputs("}, ", stream);
+}
+
+/// The name, then the members of the object `settings`.
+static enum status write_method(const struct mesofit_fit_options *options, FILE *stream) {
+    static const char blanks[] = " \t\r\n";
+    const char *settings = options->settings ? options->settings : "{}";
+    settings += strspn(settings, blanks);
+    if (*settings != '{')
+        return mf_status_fail(STATUS_BAD_INPUT, "settings: \"%s\" is not a JSON object", settings);
+    const char *first = settings + 1 + strspn(settings + 1, blanks);
+    fprintf(stream, "\"method\": {\"name\": \"%s\"%s%s", options->method ? options->method : "",
+            *first == '}' ? "" : ", ", first);
+    return STATUS_OK;
+}
+
+static enum status write(struct fit_text *run, const struct mesofit_fit_options *options) {
+    size_t length;
+    *run = (struct fit_text){0};
+    TRY(add_tables(run, options));
+    FILE *stream = open_memstream(&run->text, &length);
+    if (stream == NULL)
+        return mf_status_fail(STATUS_NO_MEMORY, "no memory for a fit's text");
+    fprintf(stream, "{\"seed\": %" PRIu64 ", ", options->scene.seed);
+    write_target(options, stream);
+    write_unknowns(options, stream);
+    fputs("\"scene\": {", stream);
+    mf_scene_text_write(&options->scene, stream);
+    fputs("}, ", stream);
+    const enum status status = write_method(options, stream);
+    fputc('}', stream);
+    fclose(stream);
+    return status;
+}
+
+static void clear(struct fit_text *run) {
+    free(run->text);
+    for (size_t k = 0; k < run->tables; k++)
+        mf_memory_free(run->values[k]);
+    *run = (struct fit_text){0};
+}
+
+// Fits --------------------------------------------------------------------------------------------
 
 /// Name of a text that is no file, in messages.
 static const char in_memory[] = "run";
@@ -103,7 +254,7 @@ struct mesofit_fit *mesofit_fit_create(const struct mesofit_fit_options *options
     struct fit_text run;
     struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_fit_text_write(&run, options) == STATUS_OK &&
+    if (write(&run, options) == STATUS_OK &&
         mf_memory_files_begin_one(&memory_files, in_memory, run.text, run.table, run.tables) ==
             STATUS_OK) {
         if (open_run(&fit, in_memory, &options->scene, options->scene.threads, options->progress,
@@ -111,7 +262,7 @@ struct mesofit_fit *mesofit_fit_create(const struct mesofit_fit_options *options
             fit = NULL;
         mf_memory_files_end(&memory_files);
     }
-    mf_fit_text_clear(&run);
+    clear(&run);
     mf_guard_leave();
     return fit;
 }
@@ -201,4 +352,60 @@ enum mesofit_status mesofit_fit_verify(struct mesofit_fit *fit,
                                        struct mesofit_verification *verification) {
     mf_guard_enter();
     return mf_guard_return(verify(fit, verification));
+}
+
+// Single candidates, for optimisers of the caller's own -------------------------------------------
+
+size_t mesofit_fit_coefficients(const struct mesofit_fit *fit) {
+    return fit->parametrisation.variables;
+}
+
+/// An inversion has no coefficients.
+static enum status check_kind(const struct mesofit_fit *fit) {
+    const struct inverse_method *method = fit->file.method;
+    return method->kind == INVERSE_MATCHING
+               ? STATUS_OK
+               : mf_status_fail(STATUS_BAD_INPUT, "the method \"%s\" does not measure candidates",
+                                method->name);
+}
+
+static enum status start(const struct mesofit_fit *fit, double *coefficients) {
+    TRY(check_kind(fit));
+    return mf_parametrisation_start(&fit->parametrisation, coefficients);
+}
+
+enum mesofit_status mesofit_fit_start(const struct mesofit_fit *fit, double *coefficients) {
+    mf_guard_enter();
+    return mf_guard_return(start(fit, coefficients));
+}
+
+static enum status evaluate(const struct mesofit_fit *fit, const double *coefficients,
+                            uint64_t seed, double *error, double *variance) {
+    enum status status = STATUS_OK;
+    struct unknowns_laws laws = {0};
+    struct evaluate_result result;
+    TRY(check_kind(fit));
+    const struct population_parameters *population = fit->file.method_parameters;
+    CHECK(mf_parametrisation_laws(&fit->parametrisation, coefficients, &laws));
+    const struct evaluate_candidate candidate = {.potential = laws.table[UNKNOWN_POTENTIAL],
+                                                 .omega = laws.table[UNKNOWN_OMEGA],
+                                                 .discard_above = HUGE_VAL,
+                                                 .threads = 1,
+                                                 .seed = seed};
+    status =
+        mf_evaluate(&laws.problem, &candidate, &population->evaluate, NULL, NULL, NULL, &result);
+    *error = status == STATUS_OK ? result.error : HUGE_VAL;
+    if (variance)
+        *variance = status == STATUS_OK ? result.variance : 0;
+    if (status == STATUS_UNSTABLE)
+        status = STATUS_OK;
+done:
+    mf_unknowns_laws_clear(&laws);
+    return status;
+}
+
+enum mesofit_status mesofit_fit_evaluate(const struct mesofit_fit *fit, const double *coefficients,
+                                         uint64_t seed, double *error, double *variance) {
+    mf_guard_enter();
+    return mf_guard_return(evaluate(fit, coefficients, seed, error, variance));
 }

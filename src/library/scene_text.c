@@ -51,7 +51,8 @@ static double own_cutoff(const void *parameters) {
 
 static const struct field own_fields[] = {FIELD_END};
 
-const struct curve_family mf_scene_text_own = {.name = "own",
+/// A law that is a function of the caller's.
+static const struct curve_family own_family = {.name = "own",
                                                .summary = "a function of the caller's",
                                                .fields = own_fields,
                                                .size = sizeof(struct mesofit_law),
@@ -79,7 +80,7 @@ static enum status add_law(const struct mesofit_law *from, const char *name,
     if (from->text || from->value == NULL)
         return STATUS_OK;
     TRY(check_own(from, name));
-    TRY(mf_curve_create(&law->curve[0], &mf_scene_text_own));
+    TRY(mf_curve_create(&law->curve[0], &own_family));
     *(struct mesofit_law *)law->curve[0].parameters = *from;
     law->curves = 1;
     TRY(mf_scene_law_tabulate(law, tabulate));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "live/live_particles.h"
 
-#include "forces/reference_forces.h"
 #include "system/orientation.h"
 
 #include <math.h>
@@ -128,6 +127,32 @@ static void write_names(const struct composition *composition, unsigned char *to
                strlen(composition->name[type]));
 }
 
+void mf_live_particles_energies(const struct table *potential,
+                                const struct composition *composition,
+                                const struct particles *particles,
+                                const struct neighbours *neighbours, float *energy) {
+    memset(energy, 0, particles->count * sizeof *energy);
+    for (size_t i = 0; i < particles->count; i++)
+        for (size_t k = neighbours->start[i]; k < neighbours->stop[i]; k++) {
+            const size_t j = (size_t)neighbours->list[k];
+            const uint32_t a = particles->id[i], b = particles->id[j];
+            double square = 0, phi;
+            for (int d = 0; d < particles->box.dimensions; d++) {
+                const double apart =
+                    box_nearest(particles->position[d][i] - particles->position[d][j],
+                                particles->box.length[d]);
+                square += apart * apart;
+            }
+            const double r = sqrt(square);
+            const int pair = mf_composition_pair_of_ids(composition, a, b);
+            if (j == i || r >= table_cutoff(potential, pair)) // j = i is what is left of a row
+                continue;
+            mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
+            energy[a] += (float)(0.5 * phi);
+            energy[b] += (float)(0.5 * phi);
+        }
+}
+
 void mf_live_particles_write(const struct simulation *simulation, bool energies,
                              struct live_bytes *bytes) {
     const struct particles *particles = &simulation->particles;
@@ -144,8 +169,8 @@ void mf_live_particles_write(const struct simulation *simulation, bool energies,
         to += 2 * particles->count;
     }
     if (parts & LIVE_PARTICLES_ENERGY) {
-        mf_reference_energies(simulation->setup.potential, &simulation->setup.composition,
-                              particles, &simulation->neighbours, to);
+        mf_live_particles_energies(simulation->setup.potential, &simulation->setup.composition,
+                                   particles, &simulation->neighbours, to);
         to += particles->count;
     }
     write_bonds(particles->topology, (uint32_t *)(void *)to);

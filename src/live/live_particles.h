@@ -20,11 +20,20 @@ enum { LIVE_PARTICLES_HEAD = 64 };
 ///   doubles; box, three numbers; and zeros up to LIVE_PARTICLES_HEAD;
 ///   counts of the types, COMPOSITION_MAX_TYPES words; places, shape [count, 3] within the box;
 ///   speeds [count], NaN without velocities; with LIVE_PARTICLES_POLARITY polarities [count, 2];
-///   with LIVE_PARTICLES_ENERGY energies [count] of mf_reference_energies [k_B T_0]; the ids of
-///   bonded particles, words of shape [bonds, 2]; at last the names of the types,
+///   with LIVE_PARTICLES_ENERGY energies [count] of mf_live_particles_energies [k_B T_0]; the ids
+///   of bonded particles, words of shape [bonds, 2]; at last the names of the types,
 ///   COMPOSITION_MAX_TYPES of COMPOSITION_NAME_SIZE bytes, empty in a one-component system.
 /// @param[in]     energies  tell them if there is a potential of pairs
 /// @param[in,out] bytes     grows as needed; afterwards of size 0 if there is no memory
 /// Tested: tests/live/test_live.py, by the colours of the page; test_particles.py.
 void mf_live_particles_write(const struct simulation *simulation, bool energies,
                              struct live_bytes *bytes);
+
+/// Energy that each particle has of its pairs: half of Φ of each of them.
+/// @param[in] neighbours  half list, complete for the cutoff of the potential
+/// @param[out] energy     by id, shape [count] [k_B T_0]
+/// Tested: test_live_particles.
+void mf_live_particles_energies(const struct table *potential,
+                                const struct composition *composition,
+                                const struct particles *particles,
+                                const struct neighbours *neighbours, float *energy);

@@ -12,7 +12,7 @@
 /// An error that has not been measured yet.
 #define UNMEASURED (-1.0)
 
-const char *const mf_population_no_or_yes[] = {"no", "yes", NULL};
+static const char *const no_or_yes[] = {"no", "yes", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct population_parameters, name)
 const struct field mf_population_fields[] = {
@@ -35,8 +35,8 @@ const struct field mf_population_fields[] = {
 };
 
 const struct field mf_population_round_fields[] = {
-    {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = mf_population_no_or_yes,
-     .initial = 0, .unit = "", .help = "start from the end of the last round's best simulation"},
+    {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = no_or_yes, .initial = 0, .unit = "",
+     .help = "start from the end of the last round's best simulation"},
     FIELD_END,
 };
 

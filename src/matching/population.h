@@ -20,7 +20,6 @@ struct population_parameters {
 /// Of struct population_parameters: of every simulation, and of rounds of them. "racing" stands
 /// with the methods whose optimiser says what cannot win.
 extern const struct field mf_population_fields[], mf_population_round_fields[];
-extern const char *const mf_population_no_or_yes[];
 
 /// For `struct inverse_method`.
 struct inverse_sampling mf_population_sampling(const void *parameters);

@@ -40,8 +40,7 @@ static enum status find_composition(const struct mapping *mapping,
             continue; // of what is all alike nobody need speak
         if (!mf_composition_is_name(name))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "the type of beads \"%s\": a type is called by up to %d letters, "
-                                  "digits and _, " NAMES_RESERVED
+                                  "the type of beads \"%s\": expected a type name of " NAMES_OF_TYPE
                                   "; give it another name in a map (--map)",
                                   name, COMPOSITION_NAME_SIZE - 1);
         snprintf(composition->name[type], COMPOSITION_NAME_SIZE, "%.*s", COMPOSITION_NAME_SIZE - 1,

@@ -6,7 +6,7 @@
 #include "dynamics/simulation_look.h"
 #include "dynamics/solvent.h"
 #include "io/configuration.h"
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 #include "observe/measure.h"
 
 #define SOLVENT_FILE "solvent.tsv"

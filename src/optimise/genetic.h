@@ -146,11 +146,6 @@ void mf_genetic_blend(double *a, double *b, int64_t genes, struct rng_sequence *
 /// off at M = genes^u, u uniform in (0, 1), and scaled to the rms `height` over the genes.
 void mf_genetic_walk(double *genes, int64_t count, double height, struct rng_sequence *random);
 
-/// In each block a walk is added, of |z| 2^(1 − 5u) times the survivors' spread there, at least
-/// 1e-4 of the range: steps are as long as those that led to the survivors, and shrink with them.
-void mf_genetic_mutate_walk(double *genes, const struct genetic *genetic,
-                            struct rng_sequence *random);
-
 /// A child mutates with probability `mutation`, in the way that `mutation_kind` names.
 void mf_genetic_mutate(double *genes, const struct genetic *genetic, struct rng_sequence *random);
 

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "io/input.h"
 #include "io/tracked_files.h"
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 #include "report/figure_script.h"
 #include "report/film_paint.h"
 #include "report/program.h"

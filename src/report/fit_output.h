@@ -2,23 +2,27 @@
 /// @file What a fit writes besides its history.
 #pragma once
 
+#include "io/json_write.h"
+#include "report/progress.h"
 #include "problem/unknowns.h"
 #include "defaults/fit_file.h"
 #include "report/run_folder.h"
+
+#include <stdint.h>
 
 /// The result of a fit so far.
 struct fit_result {
     enum status status; ///< OK: converged, or finished; UNCONVERGED; INTERRUPTED
     bool settled;       ///< whether OK says that it has converged
     uint64_t iterations, evaluations, engine_steps;
-    double seconds;                            ///< of the fit, without its verification
-    const double *curve[UNKNOWNS];             ///< on the unknown's points; NULL: not fitted
-    const double *curve_error[UNKNOWNS];       ///< may hold NaN: not known
-    const double *curve_flat[UNKNOWNS];        ///< shape [INVERSE_FLAT, points]; may hold NaN
-    const double *first[UNKNOWNS];             ///< the curve of the first iteration; NULL: none yet
-    double first_error, error;                 ///< of the fit, as its method measured them
-    const double *without_ramp;                ///< inverse_step.without_ramp; may hold NaN
-    struct inverse_ramp ramp;                  ///< error 0: not known
+    double seconds;                      ///< of the fit, without its verification
+    const double *curve[UNKNOWNS];       ///< on the unknown's points; NULL: not fitted
+    const double *curve_error[UNKNOWNS]; ///< may hold NaN: not known
+    const double *curve_flat[UNKNOWNS];  ///< shape [INVERSE_FLAT, points]; may hold NaN
+    const double *first[UNKNOWNS];       ///< the curve of the first iteration; NULL: none yet
+    double first_error, error;           ///< of the fit, as its method measured them
+    const double *without_ramp;          ///< inverse_step.without_ramp; may hold NaN
+    struct inverse_ramp ramp;            ///< error 0: not known
     struct inverse_slowest slowest;
     const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
     const struct inverse_parameter *number;    ///< shape [problem.numbers]
@@ -51,5 +55,33 @@ struct fit_truth {
     double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
     double rms_without_ramp; ///< of what is left
 };
-struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct unknowns *unknowns,
-                                     const double *phi, size_t pair);
+
+/// The tables of the verification of one state, as mf_fit_output_observables writes them.
+/// @param[in] inside  the state's folder in that of the fit, with / at its end, or ""
+/// Fails: as mf_run_folder_reserve.
+enum status mf_fit_reserve_observables(const struct fit_file *state, const char *inside,
+                                       struct run_folder *folder) MUST_USE;
+
+/// The tables of curves and iterations, as mf_fit_output_curves and mf_history_write write them.
+/// Fails: as mf_run_folder_reserve.
+enum status mf_fit_reserve_curves(const struct fit_file *fit, const struct unknowns *unknowns,
+                                  struct run_folder *folder) MUST_USE;
+
+// What a person has changed of a fit while it ran -------------------------------------------------
+
+enum { FIT_DAMPINGS_MAX = 256 };
+
+/// The damping of an inversion from an iteration on; plain data, which a checkpoint keeps.
+struct fit_dampings {
+    uint64_t count;
+    struct fit_damping {
+        uint64_t iteration; ///< the first whose step has it
+        double damping;
+    } change[FIT_DAMPINGS_MAX];
+};
+
+/// Ask who watches before an iteration, keep what is new, and say it: of one iteration the last
+/// wish counts. Whether anything has changed.
+/// @param[in,out] damping  of the method, or NULL: it has none
+bool mf_fit_damping_ask(struct fit_dampings *changes, uint64_t iteration, double *damping,
+                        struct progress *progress);

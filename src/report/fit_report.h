@@ -2,6 +2,7 @@
 /// @file What a finished fit says on the terminal.
 #pragma once
 
+#include "problem/unknowns.h"
 #include "report/fit_output.h"
 #include "report/progress.h"
 
@@ -13,3 +14,15 @@ void mf_fit_report_print(struct progress *to, const struct fit_file *fit,
 /// The formula that a fit found, in the units of its file; NULL: none, which is "".
 void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
                            char text[FIELD_TEXT_SIZE]);
+
+/// Of one curve, over the points that the data determine.
+struct fit_change {
+    double rms;           ///< of the difference, in the unknown's unit
+    double well, well_at; ///< the lowest point of a potential [k_B T_0] [λ]
+    double first_well, first_well_at;
+};
+
+/// @param[in] first, last  of all curves of the unknown, shape [mf_unknowns_points]
+/// Tested: test_fit_change.
+struct fit_change mf_fit_change_find(const struct unknowns *unknowns, enum unknown_kind kind,
+                                     size_t curve, const double *first, const double *last);

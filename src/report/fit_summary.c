@@ -5,14 +5,51 @@
 #include "observe/kirkwood_buff.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
-#include "report/fit_change.h"
-#include "report/fit_damping.h"
-#include "report/fit_step.h"
+#include "report/fit_report.h"
+#include "report/fit_verification.h"
 
 #include <math.h>
 
-struct fit_truth mf_fit_output_truth(const struct fit_file *fit, const struct unknowns *unknowns,
-                                     const double *phi, size_t pair) {
+// What a person has changed -----------------------------------------------------------------------
+
+bool mf_fit_damping_ask(struct fit_dampings *changes, uint64_t iteration, double *damping,
+                        struct progress *progress) {
+    double wanted;
+    if (damping == NULL || !mf_progress_ask_damping(progress, &wanted) || wanted == *damping)
+        return false;
+    const bool again =
+        changes->count > 0 && changes->change[changes->count - 1].iteration == iteration;
+    if (changes->count == FIT_DAMPINGS_MAX && !again) {
+        mf_progress_print(progress, "mesofit: warning: the damping was changed %d times; it stays",
+                          FIT_DAMPINGS_MAX);
+        return false;
+    }
+    changes->count += !again;
+    changes->change[changes->count - 1] = (struct fit_damping){iteration, wanted};
+    *damping = wanted;
+    mf_progress_print(progress, "from iteration %llu on: damping %.6g",
+                      (unsigned long long)iteration, wanted);
+    return true;
+}
+
+/// Put "changed", a list, if there are any.
+static void write_dampings(const struct fit_dampings *changes, struct json_writer *writer) {
+    if (changes->count == 0)
+        return;
+    mf_json_begin_list(writer, "changed");
+    for (size_t k = 0; k < changes->count; k++) {
+        mf_json_begin(writer, NULL);
+        mf_json_write_integer(writer, "iteration", (int64_t)changes->change[k].iteration);
+        mf_json_write_number(writer, "damping", changes->change[k].damping);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
+// The summary -------------------------------------------------------------------------------------
+
+static struct fit_truth find_truth(const struct fit_file *fit, const struct unknowns *unknowns,
+                                   const double *phi, size_t pair) {
     const struct potential_grid *grid = &unknowns->potential;
     const struct curve *curve =
         mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair);
@@ -225,7 +262,7 @@ static void write_start(struct json_writer *writer, const struct unknowns *unkno
 static void write_potential_truth(struct json_writer *writer, const struct fit_file *fit,
                                   const struct unknowns *unknowns, const double *phi, size_t pair) {
     static const char *const names[] = {"truth_rms", "truth_ramp", "truth_rms_without_ramp"};
-    const struct fit_truth truth = mf_fit_output_truth(fit, unknowns, phi, pair);
+    const struct fit_truth truth = find_truth(fit, unknowns, phi, pair);
     const double values[] = {truth.rms, truth.ramp, truth.rms_without_ramp};
     char kind[COMPOSITION_PAIR_NAME_SIZE], key[COMPOSITION_PAIR_NAME_SIZE + 32];
     mf_composition_pair_name(&fit->scene.setup.composition, (int)pair, kind);
@@ -390,7 +427,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     write_slowest(writer, &result->slowest);
     write_parameters(writer, fit, result);
     write_start(writer, unknowns, result);
-    mf_fit_damping_write(result->changes, writer);
+    write_dampings(result->changes, writer);
     if (fit->files.given[TARGET_ETD])
         mf_json_write_number(writer, "etd_cells_left_out",
                              (double)target_files_etd(&fit->files)->left_out);

@@ -43,3 +43,16 @@ bool mf_fit_verification_is_worse_than_samples(const struct verification *verifi
 /// Simulations warn in reduced units: add the scale to a warning if the file has others. What
 /// is known of the time step replaces it.
 void mf_fit_verification_add_units(const struct units *units, struct verification *verification);
+
+enum { FIT_STEP_TEXT_SIZE = 384 };
+
+/// One line: the step that was taken, whether it holds, and what would if it does not; "" for a
+/// step that the file gives and that holds. Tested: test_fit_time_step.
+void mf_fit_step_text(const struct verification *verification, const struct units *units,
+                      char text[FIT_STEP_TEXT_SIZE]);
+
+/// Whether the time step shifts the verification's pressure by more than the errors of both.
+bool mf_fit_step_shifts_pressure(const struct verification *verification);
+
+/// Whether simulations of a fit that took the first step were too coarse for its result.
+bool mf_fit_step_was_shortened(const struct verification *verification);

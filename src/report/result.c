@@ -2,10 +2,9 @@
 #include "report/result.h"
 
 #include "base/memory.h"
-#include "problem/targets.h"
 #include "io/json.h"
 #include "io/output.h"
-#include "report/result_distance.h"
+#include "problem/targets.h"
 #include "report/result_tables.h"
 
 #include <errno.h>
@@ -15,6 +14,33 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+// Distances from targets --------------------------------------------------------------------------
+
+/// Find `error_over_noise`, the rms of rmse over noise of all targets that a summary tells, in
+/// which 1 is what statistics alone leave, and `worst`, the target with the largest of them. NaN
+/// and "" if there is none, as of a simulation.
+static void find_distance(struct result_summary *summary) {
+    double sum = 0, largest = 0;
+    size_t count = 0;
+    summary->error_over_noise = NAN;
+    summary->worst[0] = '\0';
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        const double ratio = summary->distance[kind].rmse / summary->distance[kind].noise;
+        if (!isfinite(ratio))
+            continue;
+        sum += ratio * ratio;
+        count++;
+        if (ratio < largest)
+            continue;
+        largest = ratio;
+        snprintf(summary->worst, sizeof summary->worst, "%s %.2g", mf_targets_name(kind), ratio);
+    }
+    if (count > 0)
+        summary->error_over_noise = sqrt(sum / (double)count);
+}
+
+// Results -----------------------------------------------------------------------------------------
 
 enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
 
@@ -227,7 +253,7 @@ static enum status read_summary(struct result_summary *summary, const char *file
     read_length_unit(&root, summary);
     read_units(&root, &summary->units);
     read_old_truth(&root, summary);
-    mf_result_distance_find(summary);
+    find_distance(summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);
     else if (root.item && !has_distance(&root) && !is_stopped(summary))

@@ -8,7 +8,7 @@
 #include "io/checkpoint.h"
 #include "io/json.h"
 #include "io/tracked_file.h"
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 #include "report/figures.h"
 
 #include <errno.h>

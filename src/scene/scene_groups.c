@@ -77,10 +77,8 @@ static enum status read_known(struct molecules *molecules, int order, struct jso
             mf_json_fault(&groups, name, "there are more than %d groups", MOLECULES_MAX_GROUPS);
             mf_json_has(&groups, name);
         } else if (!mf_topology_is_name(name)) {
-            mf_json_fault(
-                &groups, name,
-                "expected a group name of up to %d letters, digits, _ and -, " NAMES_RESERVED,
-                TOPOLOGY_NAME_SIZE - 1);
+            mf_json_fault(&groups, name, "expected a group name of " NAMES_OF_OTHERS,
+                          TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&groups, name);
         } else {
             TRY(read_group(molecules, order, &groups, name, units));
@@ -104,9 +102,7 @@ static enum status open_group(struct molecules *molecules, struct json_object *o
     if (mf_molecules_group(molecules, order, name))
         return STATUS_OK;
     if (molecules->groups[order] == MOLECULES_MAX_GROUPS || !mf_topology_is_name(name)) {
-        mf_json_fault(object, name,
-                      "expected at most %d groups with names of up to %d letters, digits, _ and "
-                      "-, " NAMES_RESERVED,
+        mf_json_fault(object, name, "expected at most %d groups with names of " NAMES_OF_OTHERS,
                       MOLECULES_MAX_GROUPS, TOPOLOGY_NAME_SIZE - 1);
         return STATUS_OK;
     }

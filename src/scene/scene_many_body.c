@@ -16,14 +16,6 @@ const struct field mf_scene_many_body_fields[] = {
     FIELD_END,
 };
 
-/// Whether a name can be a part of a message and of a file's.
-static bool is_plain(const char *name) {
-    return name[0] && strlen(name) < MANY_BODY_NAME_SIZE &&
-           name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                             "0123456789-_")] == '\0' &&
-           !mf_names_is_reserved(name);
-}
-
 // Types -------------------------------------------------------------------------------------------
 
 static int find_type(const struct composition *composition, const char *name, size_t length) {
@@ -180,10 +172,9 @@ static enum status read_term(struct scene_many_body *many_body, struct json_obje
                              const char *name, const struct simulation_setup *setup, bool fitted) {
     struct many_body *law = many_body->law;
     const int t = law->terms, dimensions = setup->box.dimensions;
-    if (t == MANY_BODY_MAX_TERMS || !is_plain(name)) {
-        mf_json_fault(object, name,
-                      "expected at most %d densities with names of up to %d letters, digits, - and "
-                      "_, " NAMES_RESERVED,
+    if (t == MANY_BODY_MAX_TERMS || !mf_names_is_plain(name, "_-", MANY_BODY_NAME_SIZE) ||
+        mf_names_is_reserved(name)) {
+        mf_json_fault(object, name, "expected at most %d densities with names of " NAMES_OF_OTHERS,
                       MANY_BODY_MAX_TERMS, MANY_BODY_NAME_SIZE - 1);
         return STATUS_OK;
     }

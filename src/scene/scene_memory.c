@@ -26,22 +26,12 @@ static enum status tabulate(struct scene_law *law, struct json_object *object, c
     return STATUS_OK;
 }
 
-/// Whether a name can be a part of a file's.
-static bool is_plain(const char *name) {
-    return name[0] &&
-           name[strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                             "0123456789-_")] == '\0' &&
-           !mf_names_is_reserved(name);
-}
-
 static enum status read_mode(struct scene_memory *memory, struct json_object *object,
                              const char *name, const struct composition *composition,
                              const struct units *units, bool open) {
-    if (memory->modes == PAIR_MEMORY_MAX_MODES || strlen(name) >= SCENE_MEMORY_NAME_SIZE ||
-        !is_plain(name)) {
-        mf_json_fault(object, name,
-                      "expected at most %d modes with names of up to %d letters, digits, - and "
-                      "_, " NAMES_RESERVED,
+    if (memory->modes == PAIR_MEMORY_MAX_MODES ||
+        !mf_names_is_plain(name, "_-", SCENE_MEMORY_NAME_SIZE) || mf_names_is_reserved(name)) {
+        mf_json_fault(object, name, "expected at most %d modes with names of " NAMES_OF_OTHERS,
                       PAIR_MEMORY_MAX_MODES, SCENE_MEMORY_NAME_SIZE - 1);
         return STATUS_OK;
     }

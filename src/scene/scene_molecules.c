@@ -99,10 +99,8 @@ static int find_type(struct reading *reading, struct json_object *object, const 
         if (strcmp(composition->name[type], name) == 0)
             return type;
     if (!mf_composition_is_name(name))
-        mf_json_fault(
-            object, key,
-            "\"%.60s\": expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
-            name, COMPOSITION_NAME_SIZE - 1);
+        mf_json_fault(object, key, "\"%.60s\": expected a type name of " NAMES_OF_TYPE, name,
+                      COMPOSITION_NAME_SIZE - 1);
     else if (composition->types == COMPOSITION_MAX_TYPES)
         mf_json_fault(object, key, "\"%s\": more than %d types", name, COMPOSITION_MAX_TYPES);
     else {
@@ -348,9 +346,7 @@ static enum status read_kinds(struct reading *reading, struct json_object *scene
         return read_file(reading, &object, scene, units);
     for (size_t n = 0; (name = mf_json_key(&object, n)); n++) {
         if (n >= TOPOLOGY_MAX_KINDS || !mf_topology_is_name(name)) {
-            mf_json_fault(&object, name,
-                          "expected at most %d kinds with names of up to %d letters, digits, _ and "
-                          "-, " NAMES_RESERVED,
+            mf_json_fault(&object, name, "expected at most %d kinds with names of " NAMES_OF_OTHERS,
                           TOPOLOGY_MAX_KINDS, TOPOLOGY_NAME_SIZE - 1);
             mf_json_has(&object, name);
         } else {

@@ -7,7 +7,7 @@
 #include "scene/scene_attributes.h"
 #include "scene/scene_coordinates.h"
 #include "io/data_table.h"
-#include "io/snapshot.h"
+#include "trajectory/snapshot.h"
 
 #include <math.h>
 
@@ -138,8 +138,7 @@ static void read_type(struct scene *scene, struct json_object *types, const char
     mf_json_fields(types, fields, count);
     scene->setup.placement.count += *count;
     if (!mf_composition_is_name(name))
-        mf_json_fault(types, name,
-                      "expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
+        mf_json_fault(types, name, "expected a type name of " NAMES_OF_TYPE,
                       COMPOSITION_NAME_SIZE - 1);
     snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%s", name);
 }

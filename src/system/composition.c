@@ -3,7 +3,6 @@
 
 #include "base/names.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -115,9 +114,5 @@ int mf_composition_find_pair(const struct composition *composition, const char *
 }
 
 bool mf_composition_is_name(const char *name) {
-    const size_t length = strlen(name);
-    for (size_t k = 0; k < length; k++)
-        if (!isalnum((unsigned char)name[k]) && name[k] != '_')
-            return false;
-    return length > 0 && length < COMPOSITION_NAME_SIZE && !mf_names_is_reserved(name);
+    return mf_names_is_plain(name, "_", COMPOSITION_NAME_SIZE) && !mf_names_is_reserved(name);
 }

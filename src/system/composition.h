@@ -75,5 +75,5 @@ void mf_composition_pair_name(const struct composition *composition, int pair,
 /// The pair type called "A-B" or "B-A", or −1.
 int mf_composition_find_pair(const struct composition *composition, const char *name);
 
-/// Whether a type can be called so: letters, digits and _, not too many.
+/// Whether a type can be called so: NAMES_OF_TYPE.
 bool mf_composition_is_name(const char *name);

@@ -4,17 +4,12 @@
 #include "base/memory.h"
 #include "base/names.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 bool mf_topology_is_name(const char *name) {
-    const size_t length = strlen(name);
-    for (size_t k = 0; k < length; k++)
-        if (!isalnum((unsigned char)name[k]) && name[k] != '_' && name[k] != '-')
-            return false;
-    return length > 0 && length < TOPOLOGY_NAME_SIZE && !mf_names_is_reserved(name);
+    return mf_names_is_plain(name, "_-", TOPOLOGY_NAME_SIZE) && !mf_names_is_reserved(name);
 }
 
 // Checks ------------------------------------------------------------------------------------------
@@ -358,15 +353,6 @@ void mf_topology_clear(struct topology *topology) {
     mf_memory_free(topology->excluded_start);
     mf_memory_free(topology->excluded);
     *topology = (struct topology){0};
-}
-
-bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t j) {
-    if (topology == NULL)
-        return false;
-    for (size_t n = topology->excluded_start[i]; n < topology->excluded_start[i + 1]; n++)
-        if (topology->excluded[n] == j)
-            return true;
-    return false;
 }
 
 int mf_topology_reach(const struct topology_kind *kind) {

@@ -56,7 +56,7 @@ struct topology {
                             ///< excluded_start[i + 1])
 };
 
-/// Whether a kind or a group can be called so: letters, digits, _ and -, not too many.
+/// Whether a kind or a group can be called so: NAMES_OF_OTHERS.
 bool mf_topology_is_name(const char *name);
 
 /// The beads of a term as a text, "1-2-3", from 1 on.
@@ -125,6 +125,3 @@ int mf_topology_beads_of(const struct topology_kind *kind, int type);
 /// molecule, in all molecules: those that are excluded, or all. Tested: test_topology.
 double mf_topology_intramolecular_pairs(const struct topology *topology, const int type[2],
                                         bool excluded);
-
-/// Whether the pair of two ids is excluded. NULL: no molecules.
-bool mf_topology_excludes(const struct topology *topology, uint32_t i, uint32_t j);

@@ -123,10 +123,8 @@ static enum status find_type(struct gromacs_reading *reading, const struct groma
         if (strcmp(composition->name[*type], name) == 0)
             return STATUS_OK;
     if (!mf_composition_is_name(name))
-        return mf_gromacs_fail(
-            line,
-            "\"%.40s\": expected a type name of up to %d letters, digits and _, " NAMES_RESERVED,
-            name, COMPOSITION_NAME_SIZE - 1);
+        return mf_gromacs_fail(line, "\"%.40s\": expected a type name of " NAMES_OF_TYPE, name,
+                               COMPOSITION_NAME_SIZE - 1);
     if (composition->types == COMPOSITION_MAX_TYPES)
         return mf_gromacs_fail(line, "\"%s\": more than %d types", name, COMPOSITION_MAX_TYPES);
     strcpy(composition->name[composition->types++], name);

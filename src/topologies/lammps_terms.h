@@ -4,11 +4,11 @@
 #pragma once
 
 #include "base/status.h"
-#include "topologies/lammps_styles.h"
 #include "system/topology.h"
+#include "trajectory/frame.h"
 #include "trajectory/structure.h"
 
-enum { LAMMPS_MAX_COEFFICIENTS = 1000 }; ///< types of bonds, of angles, of dihedrals
+enum { LAMMPS_MAX_NUMBERS = 8 }; ///< of a line of coefficients
 
 /// A line of "Bond Coeffs" and the like.
 struct lammps_coefficient {
@@ -33,14 +33,11 @@ struct lammps_terms {
     struct lammps_coefficient *coefficient[BONDED_KINDS]; ///< shape [types + 1], by type
 };
 
-/// The units that the first line of a file tells, or "".
-void mf_lammps_terms_units(const char *text, char units[TOPOLOGY_NAME_SIZE]);
-
-/// Read all sections of a text, in which lines are then ended by NUL. Must be cleared, also after a
-/// failure. In a time that grows as n log n.
-/// Fails: BAD_INPUT with file and line for a section or an item of the header that is not known,
-/// lines that are no terms, an atom that is not there, a term that stands there twice, other
-/// numbers of them than the header says; NO_MEMORY.
-enum status mf_lammps_terms_read(struct lammps_terms *terms, const char *file, char *text,
-                                 size_t length, const struct structure *structure) MUST_USE;
+/// Read all sections of a file that has been fetched. Must be cleared, also after a failure. In a
+/// time that grows as n log n.
+/// @param[in] structure  what the trajectory's reader made of it
+/// Fails: BAD_INPUT with file and line for a section or an item of the header that is not known, a
+/// term that stands there twice, other numbers of them than the header says; NO_MEMORY.
+enum status mf_lammps_terms_read(struct lammps_terms *terms, const struct structure *structure,
+                                 const struct trajectory_frame *frame) MUST_USE;
 void mf_lammps_terms_clear(struct lammps_terms *terms);

@@ -3,6 +3,7 @@
 /// dihedrals join, with the coefficients that stand there.
 #pragma once
 
+#include "curves/bonded_kind.h"
 #include "forces/molecules.h"
 #include "io/units_scale.h"
 

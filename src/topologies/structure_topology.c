@@ -2,6 +2,7 @@
 #include "topologies/structure_topology.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "topologies/lammps_kinds.h"
 #include "topologies/lammps_topology.h"
 
@@ -63,8 +64,8 @@ static enum status find_group(struct reading *reading, int order, size_t n, int 
             return STATUS_OK;
     if (!mf_topology_is_name(name))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: %s %zu: \"%s\" is no name of a group, which has up to %d "
-                              "letters, digits, _ and -: give the molecules by a JSON file",
+                              "%s: %s %zu: \"%s\": expected a group name of " NAMES_OF_OTHERS
+                              ": give the molecules by a JSON file",
                               reading->file, kind->name, n + 1, name, TOPOLOGY_NAME_SIZE - 1);
     if (*group == MOLECULES_MAX_GROUPS)
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -127,8 +128,8 @@ static enum status check_kinds(struct reading *reading, const struct composition
     for (int type = 0; type < types->types; type++)
         if (!mf_composition_is_name(types->name[type]))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: \"%s\" is no name of a type, which has up to %d letters, "
-                                  "digits and _: give the molecules by a JSON file",
+                                  "%s: \"%s\": expected a type name of " NAMES_OF_TYPE
+                                  ": give the molecules by a JSON file",
                                   reading->file, types->name[type], COMPOSITION_NAME_SIZE - 1);
     for (int k = 0; k < topology->kinds; k++) {
         topology->kind[k].exclude = mf_topology_reach(&topology->kind[k]);

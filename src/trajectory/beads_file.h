@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The trajectory of beads that a map makes, as a file for other programs.
-///
-/// To add a format, write its `print` and put it into the list of beads_file.c.
+/// @file The trajectory of beads that a map makes, as a file for other programs: of every format
+/// that has a `print`.
 #pragma once
 
 #include "io/output.h"
 #include "trajectory/mapping.h"
+#include "trajectory/trajectory.h"
+
+#include <stdio.h>
 
 /// A file being written: it appears whole with mf_beads_file_commit or, all zero, is none. It must
 /// not be moved.
 struct beads_file {
-    const struct beads_format *format;
+    const struct trajectory_format *format;
     const struct mapping *mapping;        ///< borrowed
     const struct structure *structure;    ///< of its atoms, borrowed
     size_t *order;                        ///< shape [beads]: as the atoms stand, and not by type
@@ -41,3 +43,27 @@ enum status mf_beads_file_commit(struct beads_file *file) MUST_USE;
 
 /// Give up what was not committed; of all zero too.
 void mf_beads_file_clear(struct beads_file *file);
+
+// What formats share ------------------------------------------------------------------------------
+
+/// Å in a nm, fs in a ps, and Å/fs in a nm/ps: of formats that have those units.
+static const double beads_file_angstrom = 10, beads_file_femtosecond = 1e3,
+                    beads_file_angstrom_per_femtosecond = 1e-2;
+
+/// Whether all masses are known.
+bool mf_beads_file_has_masses(const struct beads_file *file);
+
+static inline const char *beads_file_type_name(const struct beads_file *file, size_t bead) {
+    return file->mapping->type_name[file->mapping->bead[bead].type];
+}
+
+/// Where steps must grow: those of the simulation, or numbers of frames.
+static inline long long beads_file_step(const struct beads_file *file,
+                                        const struct trajectory_frame *beads) {
+    return beads->step >= 0 ? (long long)beads->step : (long long)file->frames;
+}
+
+static inline void beads_file_print_vector(FILE *stream, const double vector[3], double scale) {
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, " %.9g", vector[d] * scale);
+}

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 static inline uint32_t binary_word(const unsigned char *at, bool big) {
@@ -37,4 +38,17 @@ static inline double binary_double(const unsigned char *at, bool big) {
 /// Number `k` of an array, of 4 or 8 bytes each.
 static inline double binary_real(const unsigned char *array, size_t k, size_t bytes, bool big) {
     return bytes == 8 ? binary_double(array + 8 * k, big) : binary_float(array + 4 * k, big);
+}
+
+/// Print the lowest `bytes` bytes of a number.
+static inline void binary_put(FILE *stream, uint64_t bits, int bytes, bool big) {
+    for (int k = 0; k < bytes; k++)
+        putc((int)(bits >> 8 * (big ? bytes - 1 - k : k) & 0xff), stream);
+}
+
+static inline void binary_put_float(FILE *stream, double number, bool big) {
+    const float value = (float)number;
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    binary_put(stream, bits, sizeof bits, big);
 }

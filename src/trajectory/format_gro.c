@@ -2,9 +2,11 @@
 //
 // GROMACS's .gro (manual, "gro file format"): columns of fixed width, of which the numbers are as
 // wide as their decimal points are apart; any number of frames, one after the other.
+#include "trajectory/beads_file.h"
 #include "trajectory/trajectory.h"
 #include "trajectory/words.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { NAME_WIDTH = 5, NUMBERS = 4 * NAME_WIDTH, LONGEST_ATOM = 256 };
@@ -178,6 +180,57 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     return read_box(frame, line, width);
 }
 
+// Beads -------------------------------------------------------------------------------------------
+
+/// Decimals of positions; velocities have one more.
+enum { PRINTED_DECIMALS = 6, PRINTED_WIDTH = PRINTED_DECIMALS + 5 };
+
+static void print_box(FILE *stream, const double box[3][3]) {
+    static const int rest[6][2] = {{0, 1}, {0, 2}, {1, 0}, {1, 2}, {2, 0}, {2, 1}};
+    bool tilted = false;
+    for (int k = 0; k < 6; k++)
+        tilted = tilted || box[rest[k][0]][rest[k][1]] != 0;
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, " %.9f", box[d][d]);
+    for (int k = 0; tilted && k < 6; k++)
+        fprintf(stream, " %.9f", box[rest[k][0]][rest[k][1]]);
+    fprintf(stream, "\n");
+}
+
+static enum status print(struct beads_file *file, const struct trajectory_frame *beads) {
+    enum { MAX_NUMBER = 100000 }; // of five digits
+    static const double farthest = 999;
+    FILE *const stream = file->output.stream;
+    fprintf(stream, "beads by mesofit");
+    if (!isnan(beads->time))
+        fprintf(stream, ", t= %.9g", beads->time);
+    if (beads->step >= 0)
+        fprintf(stream, " step= %lld", (long long)beads->step);
+    fprintf(stream, "\n%zu\n", beads->atoms);
+    for (size_t n = 0; n < beads->atoms; n++) {
+        const size_t k = file->order[n];
+        const struct mapping_bead *const bead = &file->mapping->bead[k];
+        const char *const residue =
+            file->structure->atom[file->mapping->atom[bead->first]].residue_name;
+        const double *const x = beads->position[k], *const v = beads->velocity[k];
+        if (!(fmax(fmax(fabs(x[0]), fabs(x[1])), fabs(x[2])) < farthest))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: frame %zu: a bead is more than %g nm away, and .gro has no "
+                                  "room for that: --beads takes .xyz or .lammpstrj, too",
+                                  beads->file, beads->number, farthest);
+        fprintf(stream, "%5zu%-5.5s%5.5s%5zu", (bead->molecule + 1) % MAX_NUMBER,
+                residue[0] ? residue : beads_file_type_name(file, k), beads_file_type_name(file, k),
+                (n + 1) % MAX_NUMBER);
+        for (int d = 0; d < 3; d++)
+            fprintf(stream, "%*.*f", PRINTED_WIDTH, PRINTED_DECIMALS, x[d]);
+        for (int d = 0; beads->has_velocities && d < 3; d++)
+            fprintf(stream, "%*.*f", PRINTED_WIDTH, PRINTED_DECIMALS + 1, v[d]);
+        fprintf(stream, "\n");
+    }
+    print_box(stream, beads->box);
+    return STATUS_OK;
+}
+
 static const char *const extensions[] = {"gro", NULL};
 
 const struct trajectory_format mf_format_gro = {
@@ -188,4 +241,5 @@ const struct trajectory_format mf_format_gro = {
     .fetch = fetch,
     .describe = describe,
     .decode = decode,
+    .print = print,
 };

@@ -7,7 +7,7 @@
 // simulation, which nothing tells.
 #include "base/memory.h"
 #include "trajectory/binary.h"
-#include "trajectory/gsd_chunks.h"
+#include "trajectory/gsd.h"
 
 #include <math.h>
 #include <string.h>
@@ -29,8 +29,8 @@ static enum status check_frame(struct trajectory *trajectory, uint64_t frame, st
     struct gsd *const gsd = trajectory->state;
     const struct source *const source = &trajectory->source;
     uint64_t dimensions, atoms;
-    TRY(mf_gsd_chunks_take_number(trajectory, frame, DIMENSIONS, 3, raw, &dimensions));
-    TRY(mf_gsd_chunks_take_number(trajectory, frame, COUNT, 0, raw, &atoms));
+    TRY(mf_gsd_take_number(trajectory, frame, DIMENSIONS, 3, raw, &dimensions));
+    TRY(mf_gsd_take_number(trajectory, frame, COUNT, 0, raw, &atoms));
     if (dimensions != 3)
         return mf_source_fail_byte(source, "it is of %llu dimensions; those of 3 are read",
                                    (unsigned long long)dimensions);
@@ -47,11 +47,10 @@ static enum status check_frame(struct trajectory *trajectory, uint64_t frame, st
 static enum status check_types(struct trajectory *trajectory, uint64_t frame, struct bytes *raw) {
     struct gsd *const gsd = trajectory->state;
     bool there;
-    if (frame > 0 && mf_gsd_chunks_find(gsd, frame, TYPE) == NULL)
+    if (frame > 0 && mf_gsd_find(gsd, frame, TYPE) == NULL)
         return STATUS_OK;
     raw->size = 0;
-    TRY(mf_gsd_chunks_take_if(trajectory, frame, TYPE, gsd->atoms, frame > 0 ? raw : &gsd->types,
-                              &there));
+    TRY(mf_gsd_take_if(trajectory, frame, TYPE, gsd->atoms, frame > 0 ? raw : &gsd->types, &there));
     if (frame > 0 && there)
         for (size_t k = 0; k < gsd->atoms; k++)
             if (memcmp(raw->data + 4 * k,
@@ -69,7 +68,7 @@ static enum status take_box(struct trajectory *trajectory, uint64_t frame, struc
                             double box[6]) {
     bool there;
     raw->size = 0;
-    TRY(mf_gsd_chunks_take_if(trajectory, frame, BOX, 6, raw, &there));
+    TRY(mf_gsd_take_if(trajectory, frame, BOX, 6, raw, &there));
     for (size_t k = 0; k < 6; k++)
         box[k] = there ? binary_double(raw->data + 8 * k, false) : k < 3;
     return STATUS_OK;
@@ -85,19 +84,18 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     (void)more;
     TRY(check_frame(trajectory, number, raw));
     TRY(check_types(trajectory, number, raw));
-    TRY(mf_gsd_chunks_take_number(trajectory, number, STEP, 0, raw, &header.step));
+    TRY(mf_gsd_take_number(trajectory, number, STEP, 0, raw, &header.step));
     TRY(take_box(trajectory, number, raw, header.box));
     raw->size = 0;
     TRY(mf_source_capacity(raw, sizeof header));
     raw->size = sizeof header;
-    TRY(mf_gsd_chunks_take_if(trajectory, number, POSITION, gsd->atoms, raw, &there));
+    TRY(mf_gsd_take_if(trajectory, number, POSITION, gsd->atoms, raw, &there));
     if (!there)
         return mf_source_fail_byte(&trajectory->source, "there are no positions");
-    if (gsd->moves && mf_gsd_chunks_find(gsd, number, VELOCITY))
-        TRY(mf_gsd_chunks_take_if(trajectory, number, VELOCITY, gsd->atoms, raw,
-                                  &header.has_velocities));
-    TRY(mf_gsd_chunks_take_if(trajectory, number, IMAGE, gsd->atoms, raw, &header.has_images));
-    header.has_own_images = mf_gsd_chunks_find(gsd, number, IMAGE);
+    if (gsd->moves && mf_gsd_find(gsd, number, VELOCITY))
+        TRY(mf_gsd_take_if(trajectory, number, VELOCITY, gsd->atoms, raw, &header.has_velocities));
+    TRY(mf_gsd_take_if(trajectory, number, IMAGE, gsd->atoms, raw, &header.has_images));
+    header.has_own_images = mf_gsd_find(gsd, number, IMAGE);
     memcpy(raw->data, &header, sizeof header);
     return STATUS_OK;
 }
@@ -111,7 +109,7 @@ static enum status describe_types(struct trajectory *trajectory, struct bytes *r
     uint64_t types;
     uint32_t width = 0;
     raw->size = 0;
-    TRY(mf_gsd_chunks_take(trajectory, 0, TYPES, 0, raw, &types, &width));
+    TRY(mf_gsd_take(trajectory, 0, TYPES, 0, raw, &types, &width));
     structure->has_names = true; // whose numbers are the file's own
     for (size_t k = 0; k < structure->atoms; k++) {
         struct structure_atom *const atom = &structure->atom[k];
@@ -130,7 +128,7 @@ static enum status describe_masses(struct trajectory *trajectory, struct bytes *
     struct structure *const structure = &trajectory->structure;
     bool there;
     raw->size = 0;
-    TRY(mf_gsd_chunks_take_if(trajectory, 0, MASS, structure->atoms, raw, &there));
+    TRY(mf_gsd_take_if(trajectory, 0, MASS, structure->atoms, raw, &there));
     structure->has_masses = true;
     for (size_t k = 0; k < structure->atoms; k++)
         structure->atom[k].mass =
@@ -152,8 +150,7 @@ static enum status describe_term_types(struct trajectory *trajectory, int kind, 
     uint32_t width = 0;
     bool there;
     raw->size = 0;
-    TRY(mf_gsd_chunks_take(trajectory, 0, (enum gsd_chunk)(BOND_TYPES + kind), 0, raw, &types,
-                           &width));
+    TRY(mf_gsd_take(trajectory, 0, (enum gsd_chunk)(BOND_TYPES + kind), 0, raw, &types, &width));
     if (types == 0)
         return STATUS_OK;
     TRY_ARRAY(terms->name, (size_t)types);
@@ -164,16 +161,15 @@ static enum status describe_term_types(struct trajectory *trajectory, int kind, 
         memcpy(terms->name[k], name, length < STRUCTURE_NAME ? length : STRUCTURE_NAME - 1);
     }
     raw->size = 0;
-    TRY(mf_gsd_chunks_take_if(trajectory, 0, (enum gsd_chunk)(BOND_TYPE + kind), terms->count, raw,
-                              &there));
+    TRY(mf_gsd_take_if(trajectory, 0, (enum gsd_chunk)(BOND_TYPE + kind), terms->count, raw,
+                       &there));
     TRY_ARRAY(terms->type, terms->count);
     for (size_t k = 0; k < terms->count; k++) {
         terms->type[k] = there ? binary_word(raw->data + 4 * k, false) : 0;
         if (terms->type[k] >= types)
             return mf_source_fail_byte(&trajectory->source, "\"%s\": number %zu is %lu of %llu",
-                                       mf_gsd_chunks_name((enum gsd_chunk)(BOND_TYPE + kind)),
-                                       k + 1, (unsigned long)terms->type[k],
-                                       (unsigned long long)types);
+                                       mf_gsd_name((enum gsd_chunk)(BOND_TYPE + kind)), k + 1,
+                                       (unsigned long)terms->type[k], (unsigned long long)types);
     }
     return STATUS_OK;
 }
@@ -183,7 +179,7 @@ static enum status describe_terms(struct trajectory *trajectory, int kind, struc
     const size_t atoms = 2 + (size_t)kind;
     bool there;
     raw->size = 0;
-    TRY(mf_gsd_chunks_take_if(trajectory, 0, (enum gsd_chunk)(BOND + kind), 0, raw, &there));
+    TRY(mf_gsd_take_if(trajectory, 0, (enum gsd_chunk)(BOND + kind), 0, raw, &there));
     const size_t count = there ? raw->size / (4 * atoms) : 0;
     if (count == 0)
         return STATUS_OK;
@@ -194,7 +190,7 @@ static enum status describe_terms(struct trajectory *trajectory, int kind, struc
         if (terms->atom[k] >= trajectory->structure.atoms)
             return mf_source_fail_byte(
                 &trajectory->source, "\"%s\": number %zu is of particle %lu of %zu",
-                mf_gsd_chunks_name((enum gsd_chunk)(BOND + kind)), k / atoms + 1,
+                mf_gsd_name((enum gsd_chunk)(BOND + kind)), k / atoms + 1,
                 (unsigned long)terms->atom[k] + 1, trajectory->structure.atoms);
     }
     return describe_term_types(trajectory, kind, raw);
@@ -204,8 +200,8 @@ static enum status describe_terms(struct trajectory *trajectory, int kind, struc
 static enum status describe_molecules(struct trajectory *trajectory, struct bytes *raw) {
     bool there;
     raw->size = 0;
-    TRY(mf_gsd_chunks_take_if(trajectory, 0, BOND, 0, raw, &there));
-    TRY(mf_gsd_chunks_take_if(trajectory, 0, CONSTRAINT, 0, raw, &there));
+    TRY(mf_gsd_take_if(trajectory, 0, BOND, 0, raw, &there));
+    TRY(mf_gsd_take_if(trajectory, 0, CONSTRAINT, 0, raw, &there));
     const enum status status =
         raw->size == 0 ? STATUS_OK
                        : mf_structure_join(&trajectory->structure,
@@ -276,9 +272,11 @@ const struct trajectory_format mf_format_gsd = {
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .state_size = sizeof(struct gsd),
     .recognise = recognise,
-    .open = mf_gsd_chunks_open,
-    .close = mf_gsd_chunks_close,
+    .open = mf_gsd_open,
+    .close = mf_gsd_close,
     .fetch = fetch,
     .describe = describe,
     .decode = decode,
+    .print = mf_gsd_print_beads,
+    .finish = mf_gsd_finish_beads,
 };

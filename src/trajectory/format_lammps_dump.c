@@ -2,9 +2,12 @@
 //
 // LAMMPS's dumps in text: styles atom and custom, with any columns in any order. Atoms are sorted
 // by their ids, since LAMMPS writes them as its processors have them.
+#include "trajectory/beads_file.h"
+#include "trajectory/snapshot.h"
 #include "trajectory/lammps_dump.h"
 #include "trajectory/trajectory.h"
 
+#include <math.h>
 #include <string.h>
 
 static bool recognise(const unsigned char *begin, size_t size) {
@@ -204,6 +207,61 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     return read_atoms(trajectory, frame, &dump);
 }
 
+// Beads -------------------------------------------------------------------------------------------
+
+/// Bounds of a tilted box are those of the upright one around it.
+static enum status print_box(FILE *stream, const struct trajectory_frame *beads) {
+    const double(*const box)[3] = (const double(*)[3])beads->box;
+    const double xy = box[1][0], xz = box[2][0], yz = box[2][1];
+    const double low[3] = {fmin(fmin(0, xy), fmin(xz, xy + xz)), fmin(0, yz), 0};
+    const double high[3] = {fmax(fmax(0, xy), fmax(xz, xy + xz)), fmax(0, yz), 0};
+    const double tilt[3] = {xy, xz, yz};
+    const bool tilted = xy != 0 || xz != 0 || yz != 0;
+    if (box[0][1] != 0 || box[0][2] != 0 || box[1][2] != 0)
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: frame %zu: a dump has boxes with a along x and b in the plane of "
+            "x and y: --beads takes .xyz or .gro, too",
+            beads->file, beads->number);
+    fprintf(stream, "ITEM: BOX BOUNDS%s", tilted ? " xy xz yz" : "");
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, beads->periodic[d] ? " pp" : " ff");
+    for (int d = 0; d < 3; d++) {
+        fprintf(stream, "\n%.9g %.9g", low[d] * beads_file_angstrom,
+                (box[d][d] + high[d]) * beads_file_angstrom);
+        if (tilted)
+            fprintf(stream, " %.9g", tilt[d] * beads_file_angstrom);
+    }
+    fprintf(stream, "\n");
+    return STATUS_OK;
+}
+
+static enum status print(struct beads_file *file, const struct trajectory_frame *beads) {
+    const bool masses = mf_beads_file_has_masses(file);
+    FILE *const stream = file->output.stream;
+    fprintf(stream, "ITEM: TIMESTEP\n%lld\nITEM: NUMBER OF ATOMS", beads_file_step(file, beads));
+    if (!isnan(beads->time))
+        fprintf(stream, " time=%.9g", beads->time * beads_file_femtosecond);
+    fprintf(stream, " units=real\n%zu\n", beads->atoms);
+    TRY(print_box(stream, beads));
+    fprintf(stream, "ITEM: ATOMS id mol type element%s%s%s\n", masses ? " mass" : "",
+            beads->unwrapped ? " xu yu zu" : " x y z", beads->has_velocities ? " vx vy vz" : "");
+    for (size_t n = 0; n < beads->atoms; n++) {
+        const size_t k = file->order[n];
+        const struct mapping_bead *const bead = &file->mapping->bead[k];
+        fprintf(stream, "%zu %zu %zu %s", n + 1, bead->molecule + 1, bead->type + 1,
+                beads_file_type_name(file, k));
+        if (masses)
+            fprintf(stream, " %.9g", bead->mass);
+        beads_file_print_vector(stream, beads->position[k], beads_file_angstrom);
+        if (beads->has_velocities)
+            beads_file_print_vector(stream, beads->velocity[k],
+                                    beads_file_angstrom_per_femtosecond);
+        fprintf(stream, "\n");
+    }
+    return STATUS_OK;
+}
+
 static const char *const extensions[] = {"lammpstrj", "dump", "lammpsdump", NULL};
 
 const struct trajectory_format mf_format_lammps_dump = {
@@ -217,4 +275,50 @@ const struct trajectory_format mf_format_lammps_dump = {
     .fetch = fetch,
     .describe = describe,
     .decode = decode,
+    .print = print,
 };
+
+// Snapshots of a scene ----------------------------------------------------------------------------
+
+/// Three components, of which the third is 0 in two dimensions.
+static void print_vector(const struct snapshot *snapshot, const struct snapshot_column *column,
+                         size_t particle, FILE *stream) {
+    for (int c = 0; c < 3; c++)
+        fprintf(stream, " %.10g",
+                c < column->components ? column->values[(size_t)c * snapshot->count + particle]
+                                       : 0);
+}
+
+static void print_snapshot_heading(const struct snapshot *snapshot, FILE *stream) {
+    const struct box *box = &snapshot->box;
+    fprintf(stream, "ITEM: TIMESTEP\n%llu\nITEM: NUMBER OF ATOMS time=%.10g\n%zu\n",
+            (unsigned long long)snapshot->step, snapshot->time, snapshot->count);
+    fprintf(stream, "ITEM: BOX BOUNDS pp pp pp\n");
+    for (int d = 0; d < box->dimensions; d++)
+        fprintf(stream, "0 %.10g\n", box->length[d]);
+    if (box->dimensions == 2) // as LAMMPS has two
+        fprintf(stream, "-0.5 0.5\n");
+    fprintf(stream, "ITEM: ATOMS id%s type x y z ix iy iz vx vy vz\n",
+            mf_snapshot_find(snapshot, "molecule") ? " mol" : "");
+}
+
+static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
+    const struct snapshot_column *position = mf_snapshot_find(snapshot, "position"),
+                                 *image = mf_snapshot_find(snapshot, "image"),
+                                 *velocity = mf_snapshot_find(snapshot, "velocity"),
+                                 *molecule = mf_snapshot_find(snapshot, "molecule");
+    print_snapshot_heading(snapshot, stream);
+    for (size_t k = 0; k < snapshot->count; k++) {
+        fprintf(stream, "%zu", k + 1);
+        if (molecule)
+            fprintf(stream, " %.0f", molecule->values[k]);
+        fprintf(stream, " %d", mf_snapshot_type(snapshot, k) + 1);
+        print_vector(snapshot, position, k, stream);
+        print_vector(snapshot, image, k, stream);
+        print_vector(snapshot, velocity, k, stream);
+        fprintf(stream, "\n");
+    }
+}
+
+const struct snapshot_format mf_format_lammps_dump_snapshot = {
+    .name = "lammps-dump", .suffix = "lammpstrj", .appended = true, .print = print_snapshot};

@@ -2,10 +2,11 @@
 //
 // GROMACS's compressed trajectories: XDR (RFC 4506), each frame with a header of its own. Since
 // 2023 a second magic number says that the bytes of the coordinates are counted with 64 bits.
-#include "io/xtc.h"
+#include "trajectory/beads_file.h"
+#include "trajectory/snapshot.h"
 #include "trajectory/binary.h"
 #include "trajectory/trajectory.h"
-#include "trajectory/xtc_coordinates.h"
+#include "trajectory/xtc.h"
 
 #include <math.h>
 
@@ -64,7 +65,7 @@ static enum status fetch_packed(struct source *source, struct bytes *raw) {
     if (packed.bytes == 0 || packed.bytes > INT64_MAX)
         return mf_source_fail_byte(source, "the number of bytes is not valid");
     TRY(mf_source_take(source, raw, (packed.bytes + 3) / 4 * 4));
-    const char *const fault = mf_xtc_coordinates_check(&packed.packing, packed.bytes);
+    const char *const fault = mf_xtc_check(&packed.packing, packed.bytes);
     if (fault)
         return mf_source_fail_byte(source, "%s", fault);
     TRY(mf_source_capacity(raw, XTC_SLACK));
@@ -91,8 +92,8 @@ static enum status unpack(struct trajectory_frame *frame) {
     const struct packed packed = read_packed(frame->raw.data);
     size_t damage = 0;
     TRY(mf_frame_reserve(frame, packed.packing.atoms, false));
-    const char *const fault = mf_xtc_coordinates_unpack(
-        &packed.packing, frame->raw.data + packed.begin, packed.bytes, frame->position, &damage);
+    const char *const fault = mf_xtc_unpack(&packed.packing, frame->raw.data + packed.begin,
+                                            packed.bytes, frame->position, &damage);
     return fault ? mf_frame_fail_byte(frame, packed.begin + damage, "%s", fault) : STATUS_OK;
 }
 
@@ -125,6 +126,32 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     return atoms <= XTC_FEW_ATOMS ? copy_few(frame, atoms) : unpack(frame);
 }
 
+// Writing -----------------------------------------------------------------------------------------
+
+static void place_bead(const void *context, size_t n, double position[3]) {
+    const struct beads_file *const file = context;
+    memcpy(position, file->beads->position[file->order[n]], 3 * sizeof *position);
+}
+
+static enum status print(struct beads_file *file, const struct trajectory_frame *beads) {
+    struct xtc_frame frame = {.atoms = beads->atoms,
+                              .step = beads_file_step(file, beads),
+                              .time = isnan(beads->time) ? (double)file->frames : beads->time,
+                              .place = place_bead,
+                              .context = file};
+    memcpy(frame.box, beads->box, sizeof frame.box);
+    for (size_t n = 0; n < beads->atoms; n++)
+        for (int d = 0; d < 3; d++)
+            if (!(fabs(beads->position[n][d]) < XTC_FARTHEST))
+                return mf_status_fail(STATUS_BAD_INPUT,
+                                      "%s: frame %zu: a bead is more than %g nm away, and .xtc has "
+                                      "no room for that: --beads takes .xyz or .lammpstrj, too",
+                                      beads->file, beads->number, XTC_FARTHEST);
+    file->beads = beads;
+    mf_xtc_write(&frame, file->output.stream);
+    return STATUS_OK;
+}
+
 static const char *const extensions[] = {"xtc", NULL};
 
 const struct trajectory_format mf_format_xtc = {
@@ -136,4 +163,45 @@ const struct trajectory_format mf_format_xtc = {
     .peek = peek,
     .describe = describe,
     .decode = decode,
+    .print = print,
 };
+
+// Snapshots of a scene ----------------------------------------------------------------------------
+
+/// Of a nm in the snapshot's unit, and of a ps.
+struct scale {
+    double length, time;
+};
+
+static struct scale scale_of(const struct snapshot *snapshot) {
+    const bool angstrom = snapshot->units && strcmp(snapshot->units, "real") == 0;
+    return angstrom ? (struct scale){0.1, 1e-3} : (struct scale){1, 1};
+}
+
+/// The third coordinate is 0 in two dimensions.
+static void place(const void *context, size_t particle, double position[3]) {
+    const struct snapshot *const snapshot = context;
+    const struct snapshot_column *column = snapshot->column;
+    const double scale = scale_of(snapshot).length;
+    while (strcmp(column->name, "position") != 0)
+        column++;
+    for (int d = 0; d < 3; d++)
+        position[d] = d < column->components
+                          ? scale * column->values[(size_t)d * snapshot->count + particle]
+                          : 0;
+}
+
+static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
+    const struct scale scale = scale_of(snapshot);
+    struct xtc_frame frame = {.atoms = snapshot->count,
+                              .step = (int64_t)snapshot->step,
+                              .time = scale.time * snapshot->time,
+                              .place = place,
+                              .context = snapshot};
+    for (int d = 0; d < 3; d++)
+        frame.box[d][d] = d < snapshot->box.dimensions ? scale.length * snapshot->box.length[d] : 1;
+    mf_xtc_write(&frame, stream);
+}
+
+const struct snapshot_format mf_format_xtc_snapshot = {
+    .name = "xtc", .suffix = "xtc", .appended = true, .print = print_snapshot};

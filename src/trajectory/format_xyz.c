@@ -2,12 +2,173 @@
 //
 // XYZ, plain and extended (ASE, OVITO, QUIP, LAMMPS and our own): the number of atoms, a comment, a
 // line for each atom; one frame after the other.
+#include "trajectory/beads_file.h"
 #include "trajectory/elements.h"
+#include "trajectory/snapshot.h"
 #include "trajectory/trajectory.h"
-#include "trajectory/xyz_comment.h"
+#include "trajectory/words.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <string.h>
+
+// The comment: key=value, values with blanks being quoted -----------------------------------------
+
+/// What columns of atoms mean to us.
+enum xyz_column {
+    XYZ_NAME,
+    XYZ_POSITION, ///< three columns
+    XYZ_VELOCITY, ///< three columns
+    XYZ_MOMENTUM, ///< three columns, in the unit of ASE
+    XYZ_MASS,
+    XYZ_ID,
+    XYZ_MOLECULE,
+    XYZ_COLUMNS,
+};
+
+struct xyz_comment {
+    double box[3][3];        ///< in the file's unit; 0: none
+    bool periodic[3];        ///< all, unless the file says otherwise
+    double time;             ///< in the file's unit; NAN: not said
+    int64_t step;            ///< −1: not said
+    int column[XYZ_COLUMNS]; ///< where each begins; −1: nowhere
+    size_t columns;          ///< of an atom, at least
+    char units[32];          ///< as mf_trajectory_unit_names has them; "": not said
+};
+
+enum { VALUE_SIZE = 1024, MAX_COLUMNS = 1000 };
+
+/// Names of columns as ASE, OVITO, QUIP and LAMMPS write them; they may differ in case.
+static const struct {
+    const char *name;
+    enum xyz_column column;
+    int64_t width;
+} known_columns[] = {
+    {"species", XYZ_NAME, 1},      {"element", XYZ_NAME, 1},
+    {"type", XYZ_NAME, 1},         {"pos", XYZ_POSITION, 3},
+    {"position", XYZ_POSITION, 3}, {"positions", XYZ_POSITION, 3},
+    {"velo", XYZ_VELOCITY, 3},     {"vel", XYZ_VELOCITY, 3},
+    {"velocity", XYZ_VELOCITY, 3}, {"velocities", XYZ_VELOCITY, 3},
+    {"momenta", XYZ_MOMENTUM, 3},  {"mass", XYZ_MASS, 1},
+    {"masses", XYZ_MASS, 1},       {"id", XYZ_ID, 1},
+    {"mol", XYZ_MOLECULE, 1},      {"molecule", XYZ_MOLECULE, 1},
+    {"molid", XYZ_MOLECULE, 1},
+};
+
+/// Take the next key=value; a word without a value is one with an empty value.
+static bool next_pair(const char **line, struct word *key, struct word *value) {
+    const char *at = *line + strspn(*line, " \t");
+    key->begin = at;
+    at += strcspn(at, "= \t");
+    key->length = (size_t)(at - key->begin);
+    *value = (struct word){at, 0};
+    if (*at == '=') {
+        const char quote = at[1];
+        const bool quoted = quote == '"' || quote == '\'';
+        value->begin = at + 1 + quoted;
+        value->length = strcspn(value->begin, quoted ? (char[]){quote, '\0'} : " \t");
+        at = value->begin + value->length + (quoted && value->begin[value->length]);
+    }
+    *line = at;
+    return key->length > 0 || value->length > 0 || *at != '\0';
+}
+
+static bool read_numbers(const struct word *value, double *numbers, size_t count) {
+    char text[VALUE_SIZE];
+    const char *rest = text;
+    return mf_words_copy(value, text, sizeof text) && mf_words_numbers(&rest, numbers, count);
+}
+
+/// "T T F", with or without blanks between.
+static bool read_periodic(const struct word *value, bool periodic[3]) {
+    int d = 0;
+    for (size_t k = 0; k < value->length; k++) {
+        const char c = value->begin[k];
+        if (c == 'T' || c == 't' || c == '1' || c == 'F' || c == 'f' || c == '0') {
+            if (d < 3)
+                periodic[d] = c == 'T' || c == 't' || c == '1';
+            d++;
+            while (k + 1 < value->length && value->begin[k + 1] >= 'a' &&
+                   value->begin[k + 1] <= 'z')
+                k++; // "True"
+        }
+    }
+    return d == 3;
+}
+
+/// Up to the next colon.
+static struct word take_part(const char **at, const char *end) {
+    const char *begin = *at, *colon = memchr(begin, ':', (size_t)(end - begin));
+    *at = colon ? colon + 1 : end;
+    return (struct word){begin, (size_t)((colon ? colon : end) - begin)};
+}
+
+/// "species:S:1:pos:R:3": names, kinds and numbers of columns.
+static bool read_properties(const struct word *value, struct xyz_comment *comment) {
+    const char *at = value->begin, *const end = at + value->length;
+    comment->columns = 0;
+    for (int k = 0; k < XYZ_COLUMNS; k++)
+        comment->column[k] = -1;
+    while (at < end) {
+        const struct word name = take_part(&at, end);
+        take_part(&at, end); // the kind
+        const struct word number = take_part(&at, end);
+        int64_t width;
+        if (!mf_words_integer(&number, &width) || width < 1 || width > MAX_COLUMNS)
+            return false;
+        for (size_t k = 0; k < sizeof known_columns / sizeof *known_columns; k++) {
+            int *const column = &comment->column[known_columns[k].column];
+            if (mf_words_alike(&name, known_columns[k].name) && width == known_columns[k].width &&
+                *column < 0)
+                *column = (int)comment->columns;
+        }
+        comment->columns += (size_t)width;
+        if (comment->columns > MAX_COLUMNS)
+            return false;
+    }
+    return comment->column[XYZ_POSITION] >= 0;
+}
+
+static const char *read_pair(struct xyz_comment *comment, const struct word *key,
+                             const struct word *value) {
+    double number;
+    if (mf_words_alike(key, "Lattice"))
+        return read_numbers(value, &comment->box[0][0], 9) ? NULL
+                                                           : "expected nine numbers in Lattice";
+    if (mf_words_alike(key, "Properties"))
+        return read_properties(value, comment)
+                   ? NULL
+                   : "expected name:kind:number in Properties, including pos:R:3";
+    if (mf_words_alike(key, "pbc"))
+        return read_periodic(value, comment->periodic) ? NULL : "expected three of T and F in pbc";
+    if (mf_words_alike(key, "Units"))
+        return mf_words_copy(value, comment->units, sizeof comment->units) ? NULL
+                                                                           : "Units is too long";
+    if (mf_words_alike(key, "Time") && read_numbers(value, &number, 1))
+        comment->time = number;
+    if ((mf_words_alike(key, "Step") || mf_words_alike(key, "Timestep")) &&
+        read_numbers(value, &number, 1) && fabs(number) < 9e15)
+        comment->step = (int64_t)number;
+    return NULL;
+}
+
+/// Read a comment; a plain one says nothing, and gives the columns of plain XYZ.
+static const char *read_comment(struct xyz_comment *comment, const char *line) {
+    struct word key, value;
+    *comment = (struct xyz_comment){.periodic = {true, true, true},
+                                    .time = NAN,
+                                    .step = -1,
+                                    .column = {0, 1, -1, -1, -1, -1, -1},
+                                    .columns = 4};
+    while (next_pair(&line, &key, &value)) {
+        const char *const fault = read_pair(comment, &key, &value);
+        if (fault)
+            return fault;
+    }
+    return NULL;
+}
+
+// Frames ------------------------------------------------------------------------------------------
 
 /// ASE (ase.io.extxyz) writes momenta in place of velocities, whatever the units of the file, in
 /// sqrt(u eV), and masses only where they are not those of the elements: a speed of sqrt(eV/u) is
@@ -52,7 +213,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
 static enum status begin_frame(const struct trajectory_frame *frame, struct xyz_comment *comment,
                                const char **line) {
     const char *const second = mf_frame_next_line(frame, (const char *)frame->raw.data);
-    const char *const fault = mf_xyz_comment_read(comment, second);
+    const char *const fault = read_comment(comment, second);
     *line = mf_frame_next_line(frame, second);
     return fault ? mf_frame_fail_line(frame, second, "%s", fault) : STATUS_OK;
 }
@@ -181,6 +342,47 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     return STATUS_OK;
 }
 
+// Beads -------------------------------------------------------------------------------------------
+
+static void print_heading(const struct beads_file *file, const struct trajectory_frame *beads,
+                          bool masses) {
+    FILE *const stream = file->output.stream;
+    const double *const box = beads->box[0];
+    fprintf(stream, "%zu\n", beads->atoms);
+    if (beads->has_box) {
+        fprintf(stream, "Lattice=\"");
+        for (int k = 0; k < 9; k++)
+            fprintf(stream, k ? " %.9g" : "%.9g", box[k] * beads_file_angstrom);
+        fprintf(stream, "\" ");
+    }
+    fprintf(stream, "pbc=\"%c %c %c\" Units=real ", beads->periodic[0] ? 'T' : 'F',
+            beads->periodic[1] ? 'T' : 'F', beads->periodic[2] ? 'T' : 'F');
+    if (!isnan(beads->time))
+        fprintf(stream, "Time=%.9g ", beads->time * beads_file_femtosecond);
+    if (beads->step >= 0)
+        fprintf(stream, "Step=%lld ", (long long)beads->step);
+    fprintf(stream, "Properties=species:S:1:pos:R:3%s%s:molecule:I:1\n",
+            beads->has_velocities ? ":velo:R:3" : "", masses ? ":masses:R:1" : "");
+}
+
+static enum status print(struct beads_file *file, const struct trajectory_frame *beads) {
+    const bool masses = mf_beads_file_has_masses(file);
+    FILE *const stream = file->output.stream;
+    print_heading(file, beads, masses);
+    for (size_t n = 0; n < beads->atoms; n++) {
+        const size_t k = file->order[n];
+        fputs(beads_file_type_name(file, k), stream);
+        beads_file_print_vector(stream, beads->position[k], beads_file_angstrom);
+        if (beads->has_velocities)
+            beads_file_print_vector(stream, beads->velocity[k],
+                                    beads_file_angstrom_per_femtosecond);
+        if (masses)
+            fprintf(stream, " %.9g", file->mapping->bead[k].mass);
+        fprintf(stream, " %zu\n", file->mapping->bead[k].molecule + 1);
+    }
+    return STATUS_OK;
+}
+
 static const char *const extensions[] = {"xyz", "extxyz", "exyz", NULL};
 
 const struct trajectory_format mf_format_xyz = {
@@ -193,4 +395,54 @@ const struct trajectory_format mf_format_xyz = {
     .fetch = fetch,
     .describe = describe,
     .decode = decode,
+    .print = print,
 };
+
+// Snapshots of a scene ----------------------------------------------------------------------------
+
+static int width_of(const struct snapshot_column *column) {
+    return column->vector ? 3 : column->components;
+}
+
+/// Readers know some columns by names of their own.
+static const char *name_of(const struct snapshot_column *column) {
+    static const char *const known[][2] = {
+        {"position", "pos"}, {"velocity", "velo"}, {"force", "forces"}};
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
+        if (strcmp(column->name, known[k][0]) == 0)
+            return known[k][1];
+    return column->name;
+}
+
+static void print_snapshot_heading(const struct snapshot *snapshot, FILE *stream) {
+    const struct box *box = &snapshot->box;
+    fprintf(stream, "%zu\nLattice=\"%.10g 0 0 0 %.10g 0 0 0 %.10g\" pbc=\"T T %c\" ",
+            snapshot->count, box->length[0], box->length[1], box->length[2],
+            box->dimensions == 3 ? 'T' : 'F');
+    if (snapshot->units)
+        fprintf(stream, "Units=%s ", snapshot->units);
+    fprintf(stream, "Step=%llu Time=%.10g Properties=species:S:1",
+            (unsigned long long)snapshot->step, snapshot->time);
+    for (int n = 0; n < snapshot->columns; n++)
+        fprintf(stream, ":%s:%c:%d", name_of(&snapshot->column[n]),
+                snapshot->column[n].whole ? 'I' : 'R', width_of(&snapshot->column[n]));
+    fprintf(stream, ":id:I:1\n");
+}
+
+static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
+    print_snapshot_heading(snapshot, stream);
+    for (size_t k = 0; k < snapshot->count; k++) {
+        fputs(mf_snapshot_type_name(snapshot, k), stream);
+        for (int n = 0; n < snapshot->columns; n++) {
+            const struct snapshot_column *column = &snapshot->column[n];
+            for (int c = 0; c < width_of(column); c++)
+                fprintf(stream, " %.10g",
+                        c < column->components ? column->values[(size_t)c * snapshot->count + k]
+                                               : 0);
+        }
+        fprintf(stream, " %zu\n", k);
+    }
+}
+
+const struct snapshot_format mf_format_xyz_snapshot = {
+    .name = "extxyz", .suffix = "extxyz", .appended = true, .print = print_snapshot};

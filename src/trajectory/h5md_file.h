@@ -2,6 +2,7 @@
 /// @file A file of H5MD: its group of particles, what is in it, and its units.
 #pragma once
 
+#include "base/status.h"
 #include "trajectory/h5md_element.h"
 #include "trajectory/trajectory.h"
 
@@ -26,3 +27,10 @@ void mf_h5md_file_close(struct h5md_file *h5md);
 
 /// The name of a species: that of the file's enumeration, or its number.
 void mf_h5md_file_species(const struct h5md_file *h5md, int64_t species, char name[STRUCTURE_NAME]);
+
+/// What a unit may be of.
+enum h5md_kind { H5MD_LENGTH, H5MD_TIME, H5MD_SPEED, H5MD_MASS };
+
+/// How many nm, ps, nm/ps or u a unit is. Fails: BAD_INPUT, without a place, for a symbol that is
+/// not known, or a unit of something else. Tested: test_trajectory_h5md.
+enum status mf_h5md_unit_find(const char *unit, enum h5md_kind kind, double *factor) MUST_USE;

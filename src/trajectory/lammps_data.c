@@ -93,6 +93,16 @@ static bool read_counts(const struct word *word, size_t count, const char *kind,
     return true;
 }
 
+/// "12 impropers": what is more than none of what nobody here reads.
+static bool is_foreign(const struct word *word, size_t count) {
+    static const char *const names[] = {"impropers", "ellipsoids", "lines", "triangles", "bodies"};
+    int64_t number;
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+        if (is_word(word, count, 1, names[k]))
+            return mf_words_integer(&word[0], &number) && number != 0;
+    return false;
+}
+
 static enum status read_header_line(struct lammps_data *data, const struct trajectory_frame *frame,
                                     const char *line) {
     struct word word[LAMMPS_DATA_WORDS];
@@ -110,6 +120,8 @@ static enum status read_header_line(struct lammps_data *data, const struct traje
                mf_words_number(&word[1], &data->box[2][0]) &&
                mf_words_number(&word[2], &data->box[2][1]);
     }
+    if (data->foreign == NULL && is_foreign(word, count))
+        data->foreign = line;
     for (int d = 0; d < 3 && good; d++)
         good = read_bounds(data, word, count, d);
     for (int kind = 0; kind < STRUCTURE_TERM_KINDS && good; kind++)
@@ -125,9 +137,15 @@ static bool is_heading(const struct word *word, size_t count, const char *name, 
            word[0].begin + strlen(text) == word[count - 1].begin + word[count - 1].length;
 }
 
-/// Where the first line of a section is kept; NULL: nothing is read of it.
-static const char **find_section(struct lammps_data *data, const struct word *word, size_t count) {
+/// Where the first line of a section is kept; NULL: nothing is read of it. `*style` is where its
+/// comment is kept, or stays as it is.
+static const char **find_section(struct lammps_data *data, const struct word *word, size_t count,
+                                 char **style) {
     for (int k = 0; k < STRUCTURE_TERM_KINDS; k++) {
+        if (is_heading(word, count, kinds[k], " Coeffs")) {
+            *style = data->terms[k].style;
+            return &data->terms[k].coefficients;
+        }
         if (is_heading(word, count, kinds[k], "s"))
             return &data->terms[k].first;
         if (is_heading(word, count, kinds[k], " Type Labels"))
@@ -135,11 +153,27 @@ static const char **find_section(struct lammps_data *data, const struct word *wo
     }
     if (is_heading(word, count, "atom", " Type Labels"))
         return &data->labels;
+    if (is_heading(word, count, "atoms", ""))
+        *style = data->style;
     return is_heading(word, count, "masses", "")       ? &data->masses
            : is_heading(word, count, "velocities", "") ? &data->velocities
            : is_heading(word, count, "atoms", "")      ? &data->atom
            : is_heading(word, count, "types", "")      ? &data->kinds
                                                        : NULL;
+}
+
+/// Coefficients of pairs, which are known and not read.
+static bool is_of_pairs(const struct word *word, size_t count) {
+    return is_heading(word, count, "pair", " Coeffs") ||
+           is_heading(word, count, "pairIJ", " Coeffs");
+}
+
+bool mf_lammps_data_is_labelled(const struct word *word, size_t count) {
+    double number;
+    for (size_t k = 0; k < count && k < LAMMPS_DATA_WORDS; k++)
+        if (mf_words_number(&word[k], &number))
+            return true;
+    return false;
 }
 
 /// Remember where a section begins: at the first line that is not empty.
@@ -149,16 +183,21 @@ static void read_heading(struct lammps_data *data, const struct trajectory_frame
     struct word word[LAMMPS_DATA_WORDS];
     const size_t count = mf_lammps_data_split(line, word);
     const char *comment = strchr(line, '#');
+    char *style = NULL;
     const char **const section =
-        count > 0 && count <= LONGEST ? find_section(data, word, count) : NULL;
-    if (section == NULL)
+        count > 0 && count <= LONGEST ? find_section(data, word, count, &style) : NULL;
+    if (section == NULL) {
+        if (data->unknown == NULL && count > 0 && !is_of_pairs(word, count) &&
+            !mf_lammps_data_is_labelled(word, count))
+            data->unknown = line;
         return;
+    }
     *section = line;
     do
         *section = mf_frame_next_line(frame, *section);
     while (*section && mf_words_count(*section) == 0);
-    if (section == &data->atom && comment++ && mf_words_next(&comment, &word[0]))
-        mf_words_copy(&word[0], data->style, sizeof data->style);
+    if (style && comment++ && mf_words_next(&comment, &word[0]))
+        mf_words_copy(&word[0], style, sizeof data->style);
 }
 
 /// The header ends with the first line that begins with a letter.

@@ -17,7 +17,8 @@ struct lammps_style {
 /// Bonds, angles and dihedrals.
 struct lammps_data_terms {
     size_t count, types;
-    const char *first, *labels; ///< lines of the sections; NULL: there is none
+    const char *first, *labels, *coefficients; ///< lines of the sections; NULL: there is none
+    char style[32];                            ///< of the coefficients, "" if it is not given
 };
 
 struct lammps_data {
@@ -31,6 +32,9 @@ struct lammps_data {
     char style[32]; ///< comment of the section; "" if it has none
     char units[32]; ///< of the title; "" if it has none
     int64_t step;   ///< of the title; −1: not said
+    const char
+        *foreign; ///< a line of the header with terms or particles that are not read, or NULL
+    const char *unknown; ///< heading of a section that is none of LAMMPS's that we know, or NULL
 };
 
 /// Find everything; lines end with NUL. Fails: BAD_INPUT with the line.
@@ -40,6 +44,10 @@ enum status mf_lammps_data_read(struct lammps_data *data,
 /// Split a line of a section up to its comment; returns how many words it has, all those beyond
 /// LAMMPS_DATA_WORDS being counted and not kept.
 size_t mf_lammps_data_split(const char *line, struct word word[LAMMPS_DATA_WORDS]);
+
+/// Whether a line that begins with a letter is of a section, and begins with a label: in headings
+/// there are no numbers.
+bool mf_lammps_data_is_labelled(const struct word *word, size_t count);
 
 /// The names of `types` types by a section of labels, or else their numbers. Fails: BAD_INPUT for a
 /// line that is no number and its label.

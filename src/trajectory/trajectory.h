@@ -14,9 +14,31 @@
 #include "trajectory/frame.h"
 #include "trajectory/source.h"
 #include "trajectory/structure.h"
-#include "trajectory/trajectory_units.h"
+
+/// Whose units a format is in.
+enum trajectory_unit_source {
+    TRAJECTORY_OWN_UNITS,  ///< the format says which, and nobody else
+    TRAJECTORY_ANGSTROM,   ///< Å, fs and u, unless the user says otherwise
+    TRAJECTORY_UNITS_GIVEN ///< the file may say it; else only the user knows
+};
+
+/// What one unit of a file is.
+struct trajectory_scale {
+    double length; ///< [nm]
+    double time;   ///< [ps]
+    double mass;   ///< [u]
+    double speed;  ///< [nm/ps]
+};
+
+/// The unit styles of LAMMPS (manual, command `units`) by their names, NULL-terminated; in "lj"
+/// lengths, times and masses stay the numbers that they are. "nm-ps" is ours, and GROMACS's.
+extern const char *const mf_trajectory_unit_names[];
+
+/// Fails: BAD_INPUT if there is no such style. Tested: test_trajectory_lammps.
+enum status mf_trajectory_units_find(const char *name, struct trajectory_scale *scale) MUST_USE;
 
 struct trajectory;
+struct beads_file;
 
 struct trajectory_format {
     const char *name;
@@ -42,6 +64,10 @@ struct trajectory_format {
     /// Make positions, velocities, box and time from frame->raw. Several run at once. NULL: it has
     /// no coordinates, and is a structure beside a trajectory.
     enum status (*decode)(const struct trajectory *trajectory, struct trajectory_frame *frame);
+    /// Print a frame of beads; NULL: the format is read only. Fails: BAD_INPUT for what it cannot
+    /// hold.
+    enum status (*print)(struct beads_file *file, const struct trajectory_frame *beads);
+    void (*finish)(struct beads_file *file); ///< after the last frame; NULL: nothing follows
 };
 
 /// All formats; what is recognised first comes first.

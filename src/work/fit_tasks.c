@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit_tasks.h"
 
+#include "base/digest.h"
 #include "base/memory.h"
 #include "base/parallel_times.h"
 #include "base/rng.h"
+#include "base/simd.h"
 #include "io/data_table.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { COLUMNS = 5, MAX_ROWS = PARALLEL_MAX_SIZES + 1 };
@@ -57,7 +60,9 @@ static double take_task(double *free_at, size_t workers, double seconds) {
     return end;
 }
 
-double mf_fit_tasks_schedule(const double *seconds, size_t tasks, int workers) {
+/// Seconds from begin to end of `tasks` that `workers` take one after the other, each when it is
+/// free, as mf_parallel_try hands them out: a model by discrete events. NAN without memory.
+static double schedule(const double *seconds, size_t tasks, int workers) {
     const size_t busy = tasks < (size_t)workers ? tasks : (size_t)workers;
     double *free_at = mf_memory_zeroed(busy + 1, sizeof *free_at), last = free_at ? 0 : NAN;
     for (size_t k = 0; free_at && k < tasks; k++)
@@ -77,7 +82,7 @@ double mf_fit_tasks_span(size_t tasks, double mean, double spread, int workers) 
                 mf_rng_normal4(mf_rng_philox(1, RNG_SELECTION, (uint32_t)k, round, 0), normal);
             seconds[k] = mean * exp(width * (normal[k % 4] - width / 2));
         }
-        total += mf_fit_tasks_schedule(seconds, tasks, workers) / DRAWS;
+        total += schedule(seconds, tasks, workers) / DRAWS;
     }
     mf_memory_free(seconds);
     return total;
@@ -168,4 +173,30 @@ enum status mf_fit_tasks_explain(FILE *out, const char *file, const struct run_o
     fprintf(out, "By %s, with %d threads a rank:\n", path, options->threads);
     print(out, &table, ranks, options->threads);
     return STATUS_OK;
+}
+
+// What ranks have in common -----------------------------------------------------------------------
+
+uint64_t mf_fit_ranks_digest(const struct fit_file *fit) {
+    enum { TRIED = 1000 };
+    double (*const functions[])(double) = {exp, log, sin, cos, tanh, erf, cbrt};
+    uint64_t digest = DIGEST_OF_NOTHING;
+    const char *kernels = mf_simd_name();
+    mf_digest_add(&digest, kernels, strlen(kernels));
+    for (size_t f = 0; f < sizeof functions / sizeof *functions; f++)
+        for (int k = 1; k <= TRIED; k++) {
+            const double value = functions[f](0.0137 * k) + pow(0.0137 * k, 1.7);
+            mf_digest_add(&digest, &value, sizeof value);
+        }
+    mf_digest_add(&digest, &fit->problem.seed, sizeof fit->problem.seed);
+    mf_fit_file_digest(fit, &digest);
+    return digest;
+}
+
+uint64_t mf_fit_ranks_digest_curves(const struct unknowns *unknowns, double *const *curve) {
+    uint64_t digest = DIGEST_OF_NOTHING;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        mf_digest_add(&digest, curve[kind],
+                      mf_unknowns_points(unknowns, kind) * sizeof *curve[kind]);
+    return digest;
 }

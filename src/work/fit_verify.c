@@ -6,7 +6,6 @@
 #include "defaults/fit_states.h"
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
-#include "report/fit_reserve.h"
 #include "report/fit_verification.h"
 
 #include <string.h>

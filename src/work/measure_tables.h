@@ -2,6 +2,7 @@
 /// @file The tables of a measurement.
 #pragma once
 
+#include "io/json_write.h"
 #include "work/measure_output.h"
 
 /// Whether any window of motion is complete; and any of escape times.
@@ -13,5 +14,6 @@ bool mf_measure_tables_have_etd(const struct measure_result *result);
 /// NO_MEMORY.
 enum status mf_measure_tables_write(const struct measure_result *result) MUST_USE;
 
-/// What the records of observables want to know of the system.
-struct simulation_setup mf_measure_tables_setup(const struct measure_result *result);
+/// Fails: NO_MEMORY.
+enum status mf_measure_scene_write(const struct measure_result *result,
+                                   struct json_writer *writer) MUST_USE;

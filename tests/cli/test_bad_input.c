@@ -268,9 +268,6 @@ static const struct fault run_faults[] = {
         "a solver's strength of an earlier version", "\"samples\": 8",
         "\"samples\": 8, \"strength\": 1000",
         "input.json: method.strength: no longer a key: it is chosen from the noise; leave it out"),
-    FAULT("a method of an earlier version", "\"imc\"", "\"joint-imc\"",
-          "input.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\", which "
-          "fits one state or several"),
     FAULT("a constant of an earlier version", "\"samples\": 8", "\"samples\": 8, \"depth\": 8",
           "input.json: method.depth: no longer a key: its default is always used; leave "
           "it out"),

@@ -196,9 +196,6 @@ static void test_what_no_states_can_be_is_refused(void **state) {
         const char *from, *to, *words[4];
     } cases[] = {
         {"\"imc\"", "\"ibi\"", {"method.name", "\"ibi\" fits one state", NULL}},
-        {"\"imc\"",
-         "\"joint-imc\"",
-         {"bad.json: method.name: \"joint-imc\" is of an earlier version: write \"imc\"", NULL}},
         {"\"dense/rdf.tsv\"", "\"dense/rdf.tsv\", \"cutoff\": 1", {"states.dense", "same bins"}},
         {"\"dense\": {", "\"../dense\": {", {"states", "\"../dense\"", "letters"}},
         {"\"dense\": {", "\"dense\": 4, \"x\": {", {"states.dense", "expected an object"}},

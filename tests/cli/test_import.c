@@ -320,7 +320,7 @@ static void test_faults_are_named_with_their_lines(void **state) {
         {"<max>0.9</max>", "", "settings.xml:7: <non-bonded>: <max> is missing"},
         {"<max>0.9", "<max>x", "settings.xml:8: <max>: \"x\" is no number above 0"},
         {"<type2>A</type2>", "", "settings.xml:7: <non-bonded>: <type2> is missing"},
-        {"<type1>A", "<type1>A B", "settings.xml:8: <type1>: \"A B\" can be no name"},
+        {"<type1>A", "<type1>A B", "settings.xml:8: <type1>: \"A B\": expected a name of up to"},
         {"<p_target>1.5", "<p_target>?", "settings.xml:9: <p_target>: \"?\" is no number"},
         {">A-A.dist.tgt", ">B.tgt", "settings.xml:9: <target>: votca/B.tgt: No such file"},
         {"<target>A-A.dist.tgt</target>", "", "<cg>: no <non-bonded> has a target"},

@@ -9,6 +9,7 @@
 #include "base/statistics.h"
 #include "forces/bonded.h"
 #include "inversion/sampler.h"
+#include "shared/all_pairs.h"
 #include "shared/fluids.h"
 #include "shared/hotelling.h"
 #include "shared/is_close.h"
@@ -135,7 +136,7 @@ static void measure(const struct melt *melt, const struct particles *particles,
                 square += pow(box_nearest(particles->position[d][i] - particles->position[d][j],
                                           particles->box.length[d]),
                               2);
-            if (!mf_topology_excludes(particles->topology, particles->id[i], particles->id[j]))
+            if (!all_pairs_excludes(particles->topology, particles->id[i], particles->id[j]))
                 count(4, sqrt(square), 1.0 / COUNT, sum[4]);
         }
 }

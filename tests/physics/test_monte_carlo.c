@@ -7,7 +7,7 @@
 #include "dynamics/hybrid.h"
 #include "dynamics/metropolis.h"
 #include "observe/rdf.h"
-#include "forces/reference_forces.h"
+#include "forces/configurational.h"
 #include "shared/all_pairs.h"
 #include "shared/fluids.h"
 #include "shared/hotelling.h"
@@ -315,9 +315,8 @@ static void add_configurational(const struct metropolis *metropolis, double *squ
                                  metropolis->law.potential->cutoff, 0));
     assert_ok(mf_neighbours_sort_and_build(&half, &copy));
     const struct composition alike = {0};
-    assert_ok(mf_reference_configurational(metropolis->law.potential, &alike,
-                                           metropolis->law.temperature, &copy, &half, NULL, NULL,
-                                           &here[0], &here[1]));
+    assert_ok(mf_configurational(metropolis->law.potential, &alike, metropolis->law.temperature,
+                                 &copy, &half, NULL, NULL, &here[0], &here[1]));
     *squares += here[0];
     *laplacian += here[1];
     mf_neighbours_clear(&half);

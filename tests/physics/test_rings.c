@@ -8,7 +8,6 @@
 #include "dynamics/metropolis.h"
 #include "dynamics/relax.h"
 #include "dynamics/relax_molecules.h"
-#include "dynamics/relax_soft.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/molecules.h"

@@ -8,6 +8,7 @@
 #include "shared/many_bodies.h"
 #include "shared/molecules.h"
 #include "shared/pairs.h"
+#include "shared/slow_forces.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -24,9 +25,9 @@ static void compare(const struct pairs_system *system, const struct pair_law *la
     pairs_make(&particles, &neighbours, system, law);
     assert_ok(mf_configurational(law->potential, &law->composition, law->temperature, &particles,
                                  &neighbours, beside, others, &fast[0], &fast[1]));
-    assert_ok(mf_reference_configurational(law->potential, &law->composition, law->temperature,
-                                           &particles, &neighbours, beside, others, &slow[0],
-                                           &slow[1]));
+    assert_ok(slow_forces_configurational(law->potential, &law->composition, law->temperature,
+                                          &particles, &neighbours, beside, others, &slow[0],
+                                          &slow[1]));
     assert_true(slow[0] > 0);
     assert_close_relative(fast[0], slow[0], rounding);
     assert_close_relative(fast[1], slow[1], rounding);

@@ -278,6 +278,20 @@ static void test_exact_friction_leaves_a_normal_number_when_drawn_often(void **s
     kept_pairs_clear(&kept);
 }
 
+/// What a method makes of ω at a time step.
+struct friction_factors {
+    double damping;
+    double amplitude; ///< standard deviation of the kick [λ/τ]
+};
+
+static struct friction_factors factors_of(const struct friction_method *method, double omega,
+                                          double time_step, double temperature) {
+    const double d = method->damping(omega, time_step);
+    const double square =
+        method->square ? method->square(time_step, temperature) * d * (1 - method->bound * d) : 1;
+    return (struct friction_factors){d, sqrt(square)};
+}
+
 /// u' = (1 − 2 damping) u + 2 kick ζ keeps the variance 2 k_B T if amplitude² = 2 k_B T damping
 /// (1 − damping): at any time step and any friction. The midpoint rule's (1 + 2G) u' = (1 − 2G) u
 /// + 2 kick ζ does if amplitude² = 4 k_B T G.
@@ -286,14 +300,12 @@ static void test_factors_keep_the_temperature_when_the_time_step_is_anything(voi
     const double temperature = 1.3, omega[] = {0, 1e-9, 1e-3, 1, 10, 30};
     for (double time_step = 1e-9; time_step < 1e9; time_step *= 10)
         for (int n = 0; n < 6; n++) {
-            const struct friction_factors exact = mf_friction_factors_of(
-                                              mf_aboba.friction, omega[n], time_step, temperature),
-                                          split =
-                                              mf_friction_factors_of(mf_shardlow.friction, omega[n],
-                                                                     time_step, temperature),
-                                          implicit = mf_friction_factors_of(
-                                              mf_aboba_implicit.friction, omega[n], time_step,
-                                              temperature);
+            const struct friction_factors exact = factors_of(mf_aboba.friction, omega[n], time_step,
+                                                             temperature),
+                                          split = factors_of(mf_shardlow.friction, omega[n],
+                                                             time_step, temperature),
+                                          implicit = factors_of(mf_aboba_implicit.friction,
+                                                                omega[n], time_step, temperature);
             assert_close_relative(exact.amplitude * exact.amplitude,
                                   2 * temperature * exact.damping * (1 - exact.damping), 1e-12);
             assert_close_relative(implicit.amplitude * implicit.amplitude,

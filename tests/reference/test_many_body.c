@@ -4,10 +4,10 @@
 // differences of the energy and of the volume, and beside the force that many-body dissipative
 // particle dynamics is about.
 #include "dynamics/simulation_look.h"
-#include "forces/reference_forces.h"
 #include "shared/is_close.h"
 #include "shared/many_bodies.h"
 #include "shared/restart.h"
+#include "shared/slow_forces.h"
 #include "shared/testing.h"
 #include "shared/variants.h"
 
@@ -25,9 +25,9 @@ static void find(const struct many_body *law, const struct particles *particles,
                  struct found *found) {
     *found = (struct found){0};
     assert_true(particles->count <= BEADS);
-    assert_ok(mf_reference_many_body(
-        law, particles, (double *[]){found->force[0], found->force[1], found->force[2]},
-        &found->sums));
+    assert_ok(slow_forces_many_body(law, particles,
+                                    (double *[]){found->force[0], found->force[1], found->force[2]},
+                                    &found->sums));
 }
 
 static void begin(struct simulation *simulation, struct many_bodies *many) {

@@ -41,6 +41,15 @@ static double friction_and_noise(const struct pair_law *law, const struct partic
     return -omega * omega * speed + sqrt(2 * law->temperature / law->time_step) * omega * zeta;
 }
 
+bool all_pairs_excludes(const struct topology *topology, uint32_t i, uint32_t j) {
+    if (topology == NULL)
+        return false;
+    for (size_t n = topology->excluded_start[i]; n < topology->excluded_start[i + 1]; n++)
+        if (topology->excluded[n] == j)
+            return true;
+    return false;
+}
+
 void all_pairs_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
                       struct pair_sums *sums) {
     const int dimensions = particles->box.dimensions;
@@ -52,7 +61,7 @@ void all_pairs_forces(const struct pair_law *law, struct particles *particles, u
             double r_ij[3];
             const double r = separation(particles, i, j, r_ij);
             double force = 0;
-            if (mf_topology_excludes(particles->topology, particles->id[i], particles->id[j]))
+            if (all_pairs_excludes(particles->topology, particles->id[i], particles->id[j]))
                 continue;
             if (law->potential && r < law->potential->cutoff) {
                 double phi, slope;

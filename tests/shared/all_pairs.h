@@ -9,3 +9,6 @@
 /// @param[out] sums  energy and virial, or NULL
 void all_pairs_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
                       struct pair_sums *sums);
+
+/// Whether the pair of two ids is excluded. NULL: no molecules.
+bool all_pairs_excludes(const struct topology *topology, uint32_t i, uint32_t j);

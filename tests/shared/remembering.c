@@ -4,6 +4,8 @@
 #include "curves/formula.h"
 #include "shared/testing.h"
 
+#include <math.h>
+
 static void make_table(struct table *table, struct formula_power_omega_parameters parameters) {
     const struct curve curve = {&mf_formula_power_omega, &parameters};
     mf_table_clear(table);
@@ -35,4 +37,17 @@ void remembering_clear(struct remembering *remembering) {
     mf_table_clear(&remembering->slow);
     mf_table_clear(&remembering->rattle);
     mf_table_clear(&remembering->across);
+}
+
+double remembering_energy(const struct pair_memory *memory, size_t *variables) {
+    const struct pair_memory_pairs *pairs = &memory->pairs;
+    double energy = 0;
+    *variables = 0;
+    for (int k = 0; k < memory->variables; k++)
+        for (size_t n = 0; n < pairs->count; n++)
+            if (!isnan(pairs->value[0][n])) {
+                energy += 0.5 * (double)pairs->value[k][n] * pairs->value[k][n];
+                ++*variables;
+            }
+    return memory->unit * memory->unit * energy;
 }

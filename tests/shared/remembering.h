@@ -23,3 +23,7 @@ void remembering_make(struct remembering *remembering, int64_t count, double tim
 /// Give another fluid's setup the same.
 void remembering_add(struct remembering *remembering, struct simulation_setup *setup, int parts);
 void remembering_clear(struct remembering *remembering);
+
+/// ½ Σ z² of the pairs in range [k_B T_0], and their number of variables: what the extended energy
+/// adds to that of the particles.
+double remembering_energy(const struct pair_memory *memory, size_t *variables);

@@ -70,9 +70,21 @@ static void test_names_that_tables_have_are_found(void **state) {
         assert_false(mf_names_is_reserved(plain[k]));
 }
 
+static void test_plain_names_have_letters_digits_and_marks(void **state) {
+    (void)state;
+    assert_true(mf_names_is_plain("Ring_2", "_", 7));
+    assert_false(mf_names_is_plain("Ring_2", "_", 6));
+    assert_false(mf_names_is_plain("a-b", "_", 9));
+    assert_true(mf_names_is_plain("a-b", "_-", 9));
+    assert_false(mf_names_is_plain("", "_", 9));
+    assert_false(mf_names_is_plain("a/b", "_-.", 9));
+    assert_false(mf_names_is_plain("\xe4", "_", 9)); // a letter in some locales
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names_that_tables_have_are_found),
+        cmocka_unit_test(test_plain_names_have_letters_digits_and_marks),
         cmocka_unit_test(test_names_find_gives_the_record_or_null),
         cmocka_unit_test(test_names_collect_gives_all_when_there_are_many),
     };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "curves/bezier.h"
+#include "base/names.h"
+#include "curves/shape.h"
 #include "curves/core.h"
 #include "curves/curve.h"
 #include "curves/formula.h"
@@ -350,13 +351,17 @@ static const double *equal_places(void) {
     return places;
 }
 
+static const struct shape *bezier(void) {
+    return mf_names_find(mf_shapes, "bezier");
+}
+
 static void test_bezier_values_are_bernstein_sums_when_coefficients_are_few(void **state) {
     (void)state;
     const double *t = equal_places();
     const double coefficients[] = {3, -1, 4, 1, -5, 9, 2, -6, 5, 3};
     double values[BEZIER_POINTS];
     for (int count = 1; count <= 10; count++) {
-        assert_ok(mf_bezier_values(coefficients, (size_t)count, t, values, BEZIER_POINTS));
+        assert_ok(bezier()->values(coefficients, (size_t)count, t, values, BEZIER_POINTS));
         for (int p = 0; p < BEZIER_POINTS; p++)
             assert_close(values[p], bernstein(coefficients, count, t[p]), 1e-13);
         assert_identical(values[0], coefficients[0] - coefficients[count - 1]);
@@ -372,7 +377,7 @@ static void test_bezier_values_stay_in_the_hull_when_coefficients_are_a_hundred(
     for (int k = 0; k < COEFFICIENTS; k++)
         coefficients[k] = (k * 7919 % 101) / 100.0 * 6.5;
     const double last = coefficients[COEFFICIENTS - 1];
-    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, equal_places(), values, BEZIER_POINTS));
+    assert_ok(bezier()->values(coefficients, COEFFICIENTS, equal_places(), values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++) {
         assert_true(values[p] + last >= 0 && values[p] + last <= 6.5);
         if (p > 0)
@@ -382,7 +387,7 @@ static void test_bezier_values_stay_in_the_hull_when_coefficients_are_a_hundred(
     assert_true(largest <= 6.5 * (COEFFICIENTS - 1) / (BEZIER_POINTS - 1.0));
     for (int k = 0; k < COEFFICIENTS; k++)
         coefficients[k] = 2;
-    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, equal_places(), values, BEZIER_POINTS));
+    assert_ok(bezier()->values(coefficients, COEFFICIENTS, equal_places(), values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 0, 1e-13);
 }
@@ -396,13 +401,13 @@ static void test_bezier_values_are_known_when_a_hundred_coefficients_are_simple(
     double coefficients[COEFFICIENTS], values[BEZIER_POINTS];
     for (int k = 0; k < COEFFICIENTS; k++)
         coefficients[k] = 5 - 0.25 * k;
-    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, t, values, BEZIER_POINTS));
+    assert_ok(bezier()->values(coefficients, COEFFICIENTS, t, values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 0.25 * 99 * (1 - t[p]), 1e-12);
     for (int k = 0; k < COEFFICIENTS - 1; k++)
         coefficients[k] = 2;
     coefficients[COEFFICIENTS - 1] = 0;
-    assert_ok(mf_bezier_values(coefficients, COEFFICIENTS, t, values, BEZIER_POINTS));
+    assert_ok(bezier()->values(coefficients, COEFFICIENTS, t, values, BEZIER_POINTS));
     for (int p = 0; p < BEZIER_POINTS; p++)
         assert_close(values[p], 2 * (1 - pow(t[p], 99)), 1e-13);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "curves/bspline.h"
+#include "base/names.h"
 #include "curves/shape.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -8,6 +8,10 @@
 #include <stdlib.h>
 
 enum { POINTS = 201 };
+
+static const struct shape *find(const char *name) {
+    return mf_names_find(mf_shapes, name);
+}
 
 /// 0 to 1 in equal steps.
 static void grid(double *t, size_t points) {
@@ -21,13 +25,13 @@ static void some_coefficients(double *coefficients, size_t count) {
         coefficients[k] = 3 * sin(17 * (double)(k + 1) * (double)(k + 1));
 }
 
-static void test_shape_find_knows_every_shape_when_named(void **state) {
+static void test_names_find_knows_every_shape(void **state) {
     (void)state;
     for (size_t k = 0; mf_shapes[k]; k++)
-        assert_ptr_equal(mf_shape_find(mf_shapes[k]->name), mf_shapes[k]);
-    assert_non_null(mf_shape_find("bezier"));
-    assert_non_null(mf_shape_find("bspline"));
-    assert_null(mf_shape_find("spline"));
+        assert_ptr_equal(find(mf_shapes[k]->name), mf_shapes[k]);
+    assert_non_null(find("bezier"));
+    assert_non_null(find("bspline"));
+    assert_null(find("spline"));
 }
 
 static void test_shape_values_begin_at_the_first_coefficient_and_end_at_0(void **state) {
@@ -35,11 +39,10 @@ static void test_shape_values_begin_at_the_first_coefficient_and_end_at_0(void *
     for (size_t count = 1; count <= 40; count++) {
         double coefficients[40], values[2], shift[2];
         some_coefficients(coefficients, count);
-        assert_ok(
-            mf_shape_find("bspline")->values(coefficients, count, (double[]){0, 1}, values, 2));
+        assert_ok(find("bspline")->values(coefficients, count, (double[]){0, 1}, values, 2));
         assert_close(values[0], coefficients[0], 1e-14);
         assert_identical(values[1], 0);
-        assert_ok(mf_shape_find("bezier")->values(coefficients, count, (double[]){0, 1}, shift, 2));
+        assert_ok(find("bezier")->values(coefficients, count, (double[]){0, 1}, shift, 2));
         assert_close(shift[0], coefficients[0] - coefficients[count - 1], 1e-13);
         assert_close(shift[1], 0, 1e-13);
     }
@@ -55,7 +58,7 @@ static void test_bspline_basis_adds_up_to_1_before_the_last_interval(void **stat
     grid(t, POINTS);
     for (int k = 0; k < COEFFICIENTS; k++)
         ones[k] = 1;
-    assert_ok(mf_bspline_values(ones, COEFFICIENTS, t, values, POINTS));
+    assert_ok(find("bspline")->values(ones, COEFFICIENTS, t, values, POINTS));
     for (int p = 0; p < POINTS; p++) {
         if (t[p] <= last)
             assert_close(values[p], 1, 1e-14);
@@ -71,7 +74,7 @@ static void test_bspline_has_its_textbook_values_in_the_last_interval(void **sta
     (void)state;
     for (double u = 0; u <= 1; u += 0.125) {
         double value;
-        assert_ok(mf_bspline_values(ones, 4, (double[]){0.5 + 0.5 * u}, &value, 1));
+        assert_ok(find("bspline")->values(ones, 4, (double[]){0.5 + 0.5 * u}, &value, 1));
         assert_close(value, 1 - u * u * u, 1e-14);
     }
 }
@@ -81,7 +84,7 @@ static void test_bspline_coefficient_acts_on_four_intervals_alone(void **state) 
     double t[POINTS], basis[POINTS * COEFFICIENTS];
     (void)state;
     grid(t, POINTS);
-    assert_ok(mf_shape_basis(mf_shape_find("bspline"), COEFFICIENTS, t, POINTS, basis));
+    assert_ok(mf_shape_basis(find("bspline"), COEFFICIENTS, t, POINTS, basis));
     for (int k = 0; k < COEFFICIENTS; k++)
         for (int p = 0; p < POINTS; p++) {
             const double place = t[p] * INTERVALS - k;
@@ -95,9 +98,9 @@ static void test_bspline_coefficient_acts_on_four_intervals_alone(void **state) 
 static void test_bspline_is_a_polynomial_when_coefficients_are_few(void **state) {
     double value;
     (void)state;
-    assert_ok(mf_bspline_values((double[]){3}, 1, (double[]){0.25}, &value, 1));
+    assert_ok(find("bspline")->values((double[]){3}, 1, (double[]){0.25}, &value, 1));
     assert_close(value, 3 * 0.75, 1e-14);
-    assert_ok(mf_bspline_values((double[]){3, 2}, 2, (double[]){0.25}, &value, 1));
+    assert_ok(find("bspline")->values((double[]){3, 2}, 2, (double[]){0.25}, &value, 1));
     assert_close(value, 3 * 0.75 * 0.75 + 2 * 2 * 0.25 * 0.75, 1e-14);
 }
 
@@ -126,15 +129,13 @@ static void test_shape_fit_recovers_the_coefficients_of_a_bspline(void **state) 
     (void)state;
     grid(t, POINTS);
     some_coefficients(coefficients, COEFFICIENTS);
-    assert_ok(mf_bspline_values(coefficients, COEFFICIENTS, t, values, POINTS));
+    assert_ok(find("bspline")->values(coefficients, COEFFICIENTS, t, values, POINTS));
     for (int p = 0; p < POINTS; p++)
         weights[p] = 1 + (p % 5);
-    assert_ok(
-        mf_shape_fit(mf_shape_find("bspline"), t, values, NULL, POINTS, fitted, COEFFICIENTS));
+    assert_ok(mf_shape_fit(find("bspline"), t, values, NULL, POINTS, fitted, COEFFICIENTS));
     for (int k = 0; k < COEFFICIENTS; k++)
         assert_close(fitted[k], coefficients[k], 1e-9);
-    assert_ok(
-        mf_shape_fit(mf_shape_find("bspline"), t, values, weights, POINTS, fitted, COEFFICIENTS));
+    assert_ok(mf_shape_fit(find("bspline"), t, values, weights, POINTS, fitted, COEFFICIENTS));
     for (int k = 0; k < COEFFICIENTS; k++)
         assert_close(fitted[k], coefficients[k], 1e-9);
 }
@@ -178,7 +179,7 @@ static void test_shape_fit_follows_the_weights(void **state) {
     static const double t[3] = {0, 0, 0.5}, values[3] = {1, 3, 1}, weights[3] = {3, 1, 0};
     double coefficient;
     (void)state;
-    assert_ok(mf_shape_fit(mf_shape_find("bspline"), t, values, weights, 3, &coefficient, 1));
+    assert_ok(mf_shape_fit(find("bspline"), t, values, weights, 3, &coefficient, 1));
     assert_close(coefficient, 1.5, 1e-10);
 }
 
@@ -187,7 +188,7 @@ static void test_shape_fit_fails_when_points_say_nothing(void **state) {
     const double nan[2] = {NAN, 1};
     double coefficients[2];
     (void)state;
-    const struct shape *shape = mf_shape_find("bspline");
+    const struct shape *shape = find("bspline");
     assert_fails(mf_shape_fit(shape, t, zero, NULL, 0, coefficients, 2), STATUS_BAD_INPUT,
                  "without points");
     assert_fails(mf_shape_fit(shape, t, nan, NULL, 2, coefficients, 2), STATUS_BAD_INPUT, "nan");
@@ -197,7 +198,7 @@ static void test_shape_fit_fails_when_points_say_nothing(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_shape_find_knows_every_shape_when_named),
+        cmocka_unit_test(test_names_find_knows_every_shape),
         cmocka_unit_test(test_shape_values_begin_at_the_first_coefficient_and_end_at_0),
         cmocka_unit_test(test_bspline_basis_adds_up_to_1_before_the_last_interval),
         cmocka_unit_test(test_bspline_has_its_textbook_values_in_the_last_interval),

@@ -2,7 +2,7 @@
 //
 // Exchanges alone, of beads that hardly move: each of the six ways to share out four places among
 // two beads of each type comes as often as Boltzmann's factor says.
-#include "dynamics/exchange.h"
+#include "dynamics/metropolis.h"
 
 #include "curves/formula.h"
 #include "shared/testing.h"

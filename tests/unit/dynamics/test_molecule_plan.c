@@ -2,7 +2,7 @@
 //
 // What Monte Carlo moves know of a kind of molecules: arms of chains, stars and rings with tails,
 // as one counts them by hand, and the terms of each bead.
-#include "dynamics/molecule_plan.h"
+#include "dynamics/molecule_moves.h"
 
 #include "base/memory.h"
 #include "shared/molecules.h"

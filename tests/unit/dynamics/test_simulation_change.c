@@ -93,10 +93,10 @@ static void test_what_pairs_remember_is_scaled(void **state) {
     remembering_make(&r, COUNT, 0.02, REMEMBERING_SLOW);
     assert_ok(mf_simulation_init(&simulation, &r.fluid.setup, NULL));
     assert_ok(mf_simulation_run(&simulation, 3));
-    const double before = mf_pair_memory_energy(&simulation.memory, &variables);
+    const double before = remembering_energy(&simulation.memory, &variables);
     assert_true(before > 0);
     assert_ok(mf_simulation_change(&simulation, &other));
-    assert_close_relative(mf_pair_memory_energy(&simulation.memory, &variables),
+    assert_close_relative(remembering_energy(&simulation.memory, &variables),
                           before * other.temperature / r.fluid.setup.temperature, 1e-12);
     mf_simulation_clear(&simulation);
     remembering_clear(&r);

@@ -5,7 +5,7 @@
 #include "curves/formula.h"
 #include "export/export_columns.h"
 #include "export/export_grid.h"
-#include "export/export_power.h"
+#include "export/export_projection.h"
 #include "export/export_units.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"

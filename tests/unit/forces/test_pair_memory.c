@@ -30,7 +30,7 @@ static double extended_energy(const struct simulation *simulation,
                               const struct pair_memory *memory) {
     size_t variables;
     return mf_particles_kinetic_energy(&simulation->particles) +
-           mf_pair_memory_energy(memory, &variables);
+           remembering_energy(memory, &variables);
 }
 
 /// Σ r × v about the middle of the box, along z.
@@ -218,8 +218,8 @@ static void test_memory_goes_on_with_the_same_bits_when_restarted(void **state) 
     assert_ok(mf_simulation_run(&pieces, 47));
     restart_assert_same(&whole, &pieces);
     size_t variables;
-    assert_identical(mf_pair_memory_energy(&whole.memory, &variables),
-                     mf_pair_memory_energy(&pieces.memory, &variables));
+    assert_identical(remembering_energy(&whole.memory, &variables),
+                     remembering_energy(&pieces.memory, &variables));
     mf_simulation_clear(&whole);
     mf_simulation_clear(&pieces);
     remembering_clear(&r);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem/parametrisation.h"
 
+#include "base/names.h"
 #include "base/rng.h"
 #include "curves/formula.h"
 #include "curves/shape.h"
@@ -35,7 +36,7 @@ static void begin(struct both *both, bool potential, bool omega) {
         both->g[k] = 1;
     both->potential = (struct curve){&mf_formula_soft_repulsion, &both->soft};
     both->omega = (struct curve){&mf_formula_power_omega, &both->power};
-    const int bspline = index_of(mf_shape_find("bspline"));
+    const int bspline = index_of(mf_names_find(mf_shapes, "bspline"));
     both->problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS},
                     .target[TARGET_RDF] = {.count = BINS, .value = both->g}},

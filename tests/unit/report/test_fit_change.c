@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/fit_change.h"
+#include "report/fit_report.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 

@@ -3,6 +3,7 @@
 // Molecules: ids of their beads, what they refuse, and that what they exclude is on no list.
 #include "base/memory.h"
 #include "base/simd.h"
+#include "shared/all_pairs.h"
 #include "shared/is_close.h"
 #include "shared/molecules.h"
 #include "shared/testing.h"
@@ -53,7 +54,7 @@ static void test_pairs_inside_are_those_that_can_be_counted(void **state) {
                 for (uint32_t j = 0; j < 14; j++) {
                     const bool counts = i != j && mf_composition_type(&composition, i) == type[0] &&
                                         mf_composition_type(&composition, j) == type[1];
-                    excluded += counts && mf_topology_excludes(&topology, i, j);
+                    excluded += counts && all_pairs_excludes(&topology, i, j);
                     all += counts && topology.molecule[i] == topology.molecule[j];
                 }
             assert_identical(mf_topology_intramolecular_pairs(&topology, type, true), excluded);
@@ -72,15 +73,15 @@ static void test_beads_within_so_many_bonds_exclude_each_other(void **state) {
         make(&topology, exclude);
         for (int a = 0; a < 4; a++)
             for (int b = 0; b < 4; b++)
-                assert_int_equal(mf_topology_excludes(&topology, chain[a], chain[b]),
+                assert_int_equal(all_pairs_excludes(&topology, chain[a], chain[b]),
                                  a != b && abs(a - b) <= exclude);
-        assert_false(mf_topology_excludes(&topology, 0, 2)); // of two molecules
-        assert_false(mf_topology_excludes(&topology, 4, 5)); // single
-        assert_int_equal(mf_topology_excludes(&topology, 11, 10), exclude > 0);
+        assert_false(all_pairs_excludes(&topology, 0, 2)); // of two molecules
+        assert_false(all_pairs_excludes(&topology, 4, 5)); // single
+        assert_int_equal(all_pairs_excludes(&topology, 11, 10), exclude > 0);
         assert_int_equal(topology.excludes, exclude > 0);
         mf_topology_clear(&topology);
     }
-    assert_false(mf_topology_excludes(NULL, 0, 1));
+    assert_false(all_pairs_excludes(NULL, 0, 1));
 }
 
 /// In a ring of four, opposite beads are two bonds apart on either way: there once.

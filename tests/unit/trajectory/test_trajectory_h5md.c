@@ -6,7 +6,7 @@
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
-#include "trajectory/h5md_unit.h"
+#include "trajectory/h5md_file.h"
 #include "trajectory/trajectory.h"
 
 #include <hdf5.h>

@@ -3,7 +3,7 @@
 // Coordinates packed here, bit by bit and digit by digit as the format is described, are unpacked
 // to the same whole numbers; files of GROMACS are in test_trajectory_gromacs.
 #include "shared/testing.h"
-#include "trajectory/xtc_coordinates.h"
+#include "trajectory/xtc.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -151,10 +151,10 @@ static double (*unpacked)[3];
 
 static const char *unpack(const struct sample *sample) {
     size_t damage;
-    const char *fault = mf_xtc_coordinates_check(&sample->packing, bytes_of(sample));
+    const char *fault = mf_xtc_check(&sample->packing, bytes_of(sample));
     return fault ? fault
-                 : mf_xtc_coordinates_unpack(&sample->packing, sample->writer.bytes,
-                                             bytes_of(sample), unpacked, &damage);
+                 : mf_xtc_unpack(&sample->packing, sample->writer.bytes, bytes_of(sample), unpacked,
+                                 &damage);
 }
 
 /// From levels of 9 bits to those of 72, and from small ranges to those that are stored apart.
@@ -203,22 +203,21 @@ static void test_packing_is_refused_when_it_cannot_be(void **state) {
         .atoms = 100, .precision = 1000, .min = {0}, .max = {9, 9, 9}, .level = 9};
     struct xtc_packing bad = good;
     (void)state;
-    assert_null(mf_xtc_coordinates_check(&good, 200));
-    assert_string_equal(mf_xtc_coordinates_check(&good, 100),
-                        "too few bytes for the number of atoms");
+    assert_null(mf_xtc_check(&good, 200));
+    assert_string_equal(mf_xtc_check(&good, 100), "too few bytes for the number of atoms");
     bad.level = 8;
-    assert_non_null(mf_xtc_coordinates_check(&bad, 200));
+    assert_non_null(mf_xtc_check(&bad, 200));
     bad.level = 73;
-    assert_non_null(mf_xtc_coordinates_check(&bad, 200));
+    assert_non_null(mf_xtc_check(&bad, 200));
     bad = good;
     bad.precision = NAN;
-    assert_non_null(mf_xtc_coordinates_check(&bad, 200));
+    assert_non_null(mf_xtc_check(&bad, 200));
     bad = good;
     bad.max[1] = -1;
-    assert_non_null(mf_xtc_coordinates_check(&bad, 200));
+    assert_non_null(mf_xtc_check(&bad, 200));
     bad.min[1] = INT32_MIN;
     bad.max[1] = INT32_MAX;
-    assert_non_null(mf_xtc_coordinates_check(&bad, 200));
+    assert_non_null(mf_xtc_check(&bad, 200));
 }
 
 int main(void) {
