@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The methods of fits that simulate candidates, or take other methods as their parts, by name.
+/// @file The methods of fits that simulate candidates, or take other methods as their parts, by
+/// name.
 #pragma once
 
 #include "optimise/optimiser.h"
