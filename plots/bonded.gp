@@ -40,9 +40,9 @@ do for [kind in kinds] {
     set yrange [kJ * (A_min - 0.06 * height):kJ * (B_max + 0.2 * height)]
     set xlabel per_unit(symbol, table, 1)
     eval name_axis(energy_axis, 0.024)
-    set key at screen 0.97, screen 0.97 right top vertical maxrows 1
+    set key at screen 0.97, screen 0.97 right top vertical maxrows 1 samplen 2 width -1
     eval part_title(0.955)
-    if (columns > 1) { eval iteration_bar(part eq "" ? 0 : 0.25, 1.085) }
+    if (columns > 1) { eval iteration_bar(part eq "" ? 0 : 0.19, 1.085) }
     plot for [k = oldest:columns:every] history \
             using 1:(kJ * column(k)):(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
         @show_band table using 1:(is_shown(3) ? kJ * $2 : NaN) with lines title "result" \

@@ -127,9 +127,11 @@ static void print_measured(const struct export_job *job, const char *prefix, FIL
     if (both)
         print_change(stream, own, there);
     const double window = units->time * p->interval * (EXPORT_TIMES - 1);
-    fprintf(stream,
-            " (by slopes of the MSD from %.3g to %.3g %s, simulated by mesofit for %.3g %s%s)\n",
-            window / 2, window, units->time_name,
+    fprintf(stream, " (by slopes of the MSD from %.3g to %.3g %s", window / 2, window,
+            units->time_name);
+    if (both)
+        fprintf(stream, ", %.3g and there %.3g", diffusion * own->value, diffusion * there->value);
+    fprintf(stream, ", simulated by mesofit for %.3g %s%s)\n",
             units->time * (double)p->steps * job->model->setup.time_step, units->time_name,
             both ? " each" : "");
     if (isfinite(p->rms))

@@ -323,7 +323,8 @@ static void explain(const struct export_job *job, FILE *stream) {
             "not the result's: diffusion and all else that moves differs.\n",
             job->model->setup.omega ? " and so no omega" : "");
     if (job->model->molecules)
-        fprintf(stream, "With molecules: gmx grompp -n index.ndx%s.\n",
+        fprintf(stream,
+                "With molecules, in place of the commands above: gmx grompp -n index.ndx%s.\n",
                 job->bonded.tables ? ", and gmx mdrun -tableb with all of table_b*.xvg, "
                                      "table_a*.xvg and\ntable_d*.xvg"
                                    : "");

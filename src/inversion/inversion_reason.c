@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
+#include "inversion/inversions.h"
 #include "observe/kirkwood_buff_observable.h"
 
 #include <math.h>
@@ -141,9 +142,10 @@ void mf_inversion_reason_write(const struct inversion *inversion,
     else if (improved > 0.9 && p->second_error > p->first_error + 2 * rdf->noise && !agrees)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of g(r) rose from %.2g to %.2g with the first step, and no shorter one "
-                 "helped: the start is outside the basin of convergence of \"%s\"; try the method "
-                 "\"auto\" or another start",
-                 p->first_error, p->second_error, inversion->method->name);
+                 "helped: the start is outside the basin of convergence of \"%s\"; try %sanother "
+                 "start, and see what is said of the target first",
+                 p->first_error, p->second_error, inversion->method->name,
+                 inversion->method == &mf_automatic ? "" : "the method \"auto\" or ");
     else if (agrees)
         report_what_is_missing(inversion, reason);
     else if (stuck)
