@@ -143,6 +143,9 @@ def _carry_out(words: list[str], memory: Memory, folder: PathLike | None, resume
     words += ["-o", _path(place.path)]
     words += [word for word, wanted in (("--resume", resume), ("--force", force)) if wanted]
     outcome = carry_out(words, memory, progress)
+    if place.temporary:  # it goes with the result
+        outcome.message = outcome.message.replace("continue with resume=True",
+                                                  "in a folder=… it could be continued")
     result = Result(place, outcome)
     if outcome.status == c.INTERRUPTED and not (place.path / "summary.json").exists():
         raise KeyboardInterrupt(outcome.message)

@@ -189,6 +189,12 @@ def test_simulation_interrupted_before_its_first_sample_has_no_results(tmp_path,
     assert (tmp_path / "out" / "checkpoint.bin").exists()
 
 
+def test_interrupted_simulation_without_a_folder_says_that_it_needs_one(monkeypatch):
+    interrupt_once(monkeypatch, lambda run: True)
+    with pytest.raises(KeyboardInterrupt, match="in a folder=… it could be continued"):
+        mesofit.simulate(SCENE, measure={"equilibration": 10**9})
+
+
 def test_interrupted_simulation_goes_on_with_the_same_bits(tmp_path, monkeypatch):
     long = {**SCENE, "measure": {"equilibration": 0, "samples": 4000, "every": 10}}
     interrupt_once(monkeypatch, lambda run: steps_of(run) > 1000)
