@@ -122,14 +122,6 @@ double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t nu
            noise / count * (1 / times_squared + 1.0 / REPLICAS_BLOCKS);
 }
 
-/// Means of a number of a replica's samples.
-static double mean_of(const struct replicas *replicas, size_t k, size_t number) {
-    double sum = 0;
-    for (int b = 0; b < REPLICAS_BLOCKS; b++)
-        sum += replicas->member[k].block[(size_t)b * replicas->numbers + number];
-    return sum / REPLICAS_BLOCKS;
-}
-
 /// The least chance that the replicas' means of a number differ so between the halves that begin on
 /// both sides, by what they differ within them.
 static double find_chance_of_sides(const struct replicas *replicas, size_t number) {
@@ -137,7 +129,8 @@ static double find_chance_of_sides(const struct replicas *replicas, size_t numbe
     double contrast[REPLICAS_SIDES] = {0}, freedom = count - 1, largest = 0;
     struct running_mean all = {0};
     for (size_t k = 0; k < replicas->count; k++) {
-        const double mean = mean_of(replicas, k, number);
+        double mean, slope;
+        fit_line(replicas->member[k].block + number, replicas->numbers, &mean, &slope);
         mf_statistics_add(&all, mean);
         for (int side = 0; side < REPLICAS_SIDES; side++)
             contrast[side] += replicas_side(k, (enum replicas_side)side) * mean / count;

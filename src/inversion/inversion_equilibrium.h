@@ -40,13 +40,14 @@ struct inversion_unequilibrated {
 /// in equilibrium. Tested: test_inversion_equilibrium.
 double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t number);
 
-/// The number that the samples forget most slowly: the g(r) of a pair type, a group, a size, the
-/// energy, the pressure. Tested: test_inversion_equilibrium.
+/// What the samples of a state forget most slowly, as a mean over its bins: a section, a size, the
+/// longest waves, the energy, the pressure. Tested: test_inversion_equilibrium.
 void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
                                       struct inverse_slowest *slowest);
 
-/// Test the present samples. One in a thousand samples in equilibrium fails. Fails:
-/// NO_MEMORY. Tested: test_inversion_equilibrium.
+/// Test the present samples. One in a thousand samples in equilibrium fails, and up to one in
+/// twenty of replicas that began on both sides, which costs time alone. Fails: NO_MEMORY. Tested:
+/// test_inversion_equilibrium.
 enum status
 mf_inversion_equilibrium_check(const struct inversion_state *state,
                                struct inversion_unequilibrated *unequilibrated) MUST_USE;

@@ -187,7 +187,7 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
     TRY(verify_round(fit, 0, curve, number, listener, verification));
     if (of_fit && mf_fit_verify_contradicts(fit, verification, of_fit, reason)) {
         mf_progress_print(progress,
-                          "the verification differs from the fit's samples, and begins "
+                          "the verification contradicts the fit, and begins "
                           "again with %d times as many steps before its samples",
                           AGAIN);
         for (size_t s = 0; s < mf_fit_states_count(fit); s++)

@@ -6,8 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/// Separation of the nearest images of particles i and j; returns its length.
-static double separation(const struct particles *particles, size_t i, size_t j, double r_ij[3]) {
+double all_pairs_separation(const struct particles *particles, size_t i, size_t j, double r_ij[3]) {
     double square = 0;
     for (int d = 0; d < particles->box.dimensions; d++) {
         r_ij[d] = box_nearest(particles->position[d][i] - particles->position[d][j],
@@ -59,7 +58,7 @@ void all_pairs_forces(const struct pair_law *law, struct particles *particles, u
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = i + 1; j < particles->count; j++) {
             double r_ij[3];
-            const double r = separation(particles, i, j, r_ij);
+            const double r = all_pairs_separation(particles, i, j, r_ij);
             double force = 0;
             if (all_pairs_excludes(particles->topology, particles->id[i], particles->id[j]))
                 continue;

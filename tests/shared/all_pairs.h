@@ -10,5 +10,8 @@
 void all_pairs_forces(const struct pair_law *law, struct particles *particles, uint64_t step,
                       struct pair_sums *sums);
 
+/// Separation of the nearest images of particles i and j; returns its length.
+double all_pairs_separation(const struct particles *particles, size_t i, size_t j, double r_ij[3]);
+
 /// Whether the pair of two ids is excluded. NULL: no molecules.
 bool all_pairs_excludes(const struct topology *topology, uint32_t i, uint32_t j);

@@ -2,20 +2,10 @@
 #include "shared/slow_forces.h"
 
 #include "base/memory.h"
+#include "shared/all_pairs.h"
 
 #include <math.h>
 #include <string.h>
-
-/// Separation of the nearest images of particles i and j; returns its length.
-static double separation(const struct particles *particles, size_t i, size_t j, double r_ij[3]) {
-    double square = 0;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        r_ij[d] = box_nearest(particles->position[d][i] - particles->position[d][j],
-                              particles->box.length[d]);
-        square += r_ij[d] * r_ij[d];
-    }
-    return sqrt(square);
-}
 
 /// Thickness of the shell inside the cutoff in which pairs are counted, relative to the cutoff.
 static const double shell = 0.01;
@@ -55,7 +45,7 @@ enum status slow_forces_configurational(const struct table *potential,
             if (j == i) // what is left of a row
                 continue;
             double r_ij[3], slope, curvature;
-            const double r = separation(particles, i, j, r_ij);
+            const double r = all_pairs_separation(particles, i, j, r_ij);
             const int pair =
                 mf_composition_pair_of_ids(composition, particles->id[i], particles->id[j]);
             const double cutoff = table_cutoff(potential, pair);
@@ -91,7 +81,7 @@ static double density_of(const struct many_body *many_body, const struct many_bo
                          const struct particles *particles, size_t i) {
     double density = 0, r_ij[3], weight;
     for (size_t j = 0; j < particles->count; j++) {
-        const double r = separation(particles, i, j, r_ij);
+        const double r = all_pairs_separation(particles, i, j, r_ij);
         mf_weight_evaluate(&term->weight, r, &weight, NULL);
         if (j != i && is_of(term->neighbours, many_body, particles->id[j]))
             density += weight;
@@ -112,7 +102,7 @@ static void add_term(const struct many_body *many_body, const struct many_body_t
     for (size_t i = 0; i < particles->count; i++)
         for (size_t j = 0; j < particles->count; j++) {
             double r_ij[3], change; // of w
-            const double r = separation(particles, i, j, r_ij);
+            const double r = all_pairs_separation(particles, i, j, r_ij);
             if (i == j)
                 continue;
             mf_weight_evaluate(&term->weight, r, NULL, &change);
