@@ -140,16 +140,19 @@ static void make_slow(struct made *made, gsl_rng *rng, double time, double side)
     }
 }
 
-/// How many of 500 such samples are taken as they are.
-static int count_mixed(gsl_rng *rng, double time, double side) {
+/// How many of 500 such samples are taken as they are; of how many the halves are apart.
+static int count_mixed(gsl_rng *rng, double time, double side, int *apart) {
     static struct made made;
     struct inversion_unequilibrated *unequilibrated = &made.state.assessment.unequilibrated;
     int mixed = 0;
+    *apart = 0;
     for (int trial = 0; trial < 500; trial++) {
         make_slow(&made, rng, time, side);
         assert_ok(mf_inversion_equilibrium_check(&made.state, unequilibrated));
         mf_inversion_equilibrium_reset(&made.state);
         mixed += !unequilibrated->found;
+        *apart += unequilibrated->apart;
+        assert_false(unequilibrated->apart && !unequilibrated->found);
     }
     return mixed;
 }
@@ -158,16 +161,18 @@ static void test_replicas_are_draws_of_equilibrium_when_they_forgot_where_they_b
     (void)state;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     static const double times[] = {0.1, 0.25, 0.5, 1, 2, 4};
-    int mixed[6];
+    int mixed[6], apart;
     for (int k = 0; k < 6; k++) {
-        mixed[k] = count_mixed(rng, times[k], 0);
-        print_message("%g of the samples: %d of 500\n", times[k], mixed[k]);
+        mixed[k] = count_mixed(rng, times[k], 0, &apart);
+        print_message("%g of the samples: %d of 500, apart %d\n", times[k], mixed[k], apart);
+        assert_in_range(apart, 1, 25); // 0.05 at most
     }
-    const int apart = count_mixed(rng, 0.25, 2);
-    print_message("but four times their scatter apart: %d\n", apart);
+    const int far = count_mixed(rng, 0.25, 2, &apart);
+    print_message("but four times their scatter apart: %d, apart %d\n", far, apart);
+    assert_in_range(apart, 450, 500);
     assert_true(mixed[0] > 450 && mixed[1] > 430);
     assert_true(mixed[4] < 60 && mixed[5] < 10);
-    assert_true(apart < 25);
+    assert_true(far < 25);
     gsl_rng_free(rng);
 }
 
