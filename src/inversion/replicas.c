@@ -30,7 +30,7 @@ static bool has_chains(const struct sampler_system *system) {
 /// Beginnings on both sides of equilibrium: half of the replicas with molecules that are stretched,
 /// half with coiled ones, and of mixtures each half with a wave of composition and without.
 static struct placement_bias begin_apart(const struct replicas *replicas, size_t k) {
-    static const double stretch = 0.35, tilt = 1.5;
+    static const double stretch = 0.35, tilt = 0.6;
     const bool tilts = replicas->begins[REPLICAS_TILT] && replicas_side(k, REPLICAS_TILT) > 0;
     return (struct placement_bias){.stretch = stretch * replicas_side(k, REPLICAS_STRETCH),
                                    .tilt = tilts ? tilt : 0};

@@ -85,19 +85,25 @@ void mf_placement_mix(struct particles *particles, uint64_t seed) {
     }
 }
 
+static double wave(double periods) {
+    return cos(2 * M_PI * periods);
+}
+
 void mf_placement_tilt(struct particles *particles, double tilt, uint64_t seed) {
     enum { TRIALS = 30 }; // of each particle
     const int axis = mf_placement_slab_axis(&particles->box);
-    const double wave = 2 * M_PI / particles->box.length[axis];
-    const double *place = particles->position[axis], count = (double)particles->count;
+    const double *place = particles->position[axis], length = particles->box.length[axis];
     struct rng_sequence sequence = mf_rng_sequence_begin(seed, RNG_MIXING, 0, 1);
     for (size_t n = 0; tilt != 0 && n < TRIALS * particles->count; n++) {
         const size_t a = mf_rng_sequence_below(&sequence, (uint32_t)particles->count);
         const size_t b = mf_rng_sequence_below(&sequence, (uint32_t)particles->count);
         const uint32_t id[2] = {particles->id[a], particles->id[b]};
-        const double gain =
-            tilt * ((double)id[1] - id[0]) / count * (cos(wave * place[a]) - cos(wave * place[b]));
-        if (!(mf_rng_sequence_uniform(&sequence) < exp(gain)))
+        const double place_a = place[a] / length, place_b = place[b] / length;
+        const double phase[2] = {id[0] / (double)particles->count,
+                                 id[1] / (double)particles->count};
+        const double now = wave(place_a - phase[0]) + wave(place_b - phase[1]);
+        const double then = wave(place_a - phase[1]) + wave(place_b - phase[0]);
+        if (!(mf_rng_sequence_uniform(&sequence) < exp(tilt * (then - now))))
             continue;
         particles->id[a] = id[1];
         particles->id[b] = id[0];

@@ -47,8 +47,8 @@ void mf_placement_lattice(struct particles *particles, double jitter, uint64_t s
 /// of a lattice without order. Before velocities are drawn, which belong to ids.
 void mf_placement_mix(struct particles *particles, uint64_t seed);
 
-/// Exchange ids so that those of low numbers gather in one half of the box: drawn from
-/// exp(tilt Σ (id/count − 1/2) cos(2π x/L)), x along the axis of a slab. 0: nothing.
+/// Exchange ids so that each type gathers in a part of the box of its own: drawn from
+/// exp(tilt Σ cos 2π (x/L − id/count)), x along the axis of a slab. 0: nothing.
 /// Tested: test_placement.
 void mf_placement_tilt(struct particles *particles, double tilt, uint64_t seed);
 

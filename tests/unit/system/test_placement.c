@@ -158,27 +158,32 @@ static void check_random(const struct box *box, size_t count, double separation)
     mf_particles_clear(&again);
 }
 
-/// Half of the ids are of a wave along the longest edge, whose amplitude would be sqrt(N/4) = 16
-/// by chance; every id is there once.
-static void test_placement_tilt_makes_a_wave_of_composition(void **state) {
+/// Each third of the ids is a wave along the longest edge, whose amplitude would be sqrt(N/3) = 18
+/// by chance, and the middle one no less than the others; every id is there once.
+static void test_placement_tilt_makes_a_wave_of_each_type(void **state) {
     (void)state;
-    enum { COUNT = 1000 };
+    enum { TYPES = 3, COUNT = 999 };
     const struct box box = {3, {10, 20, 10}};
     struct particles particles;
     bool found[COUNT] = {false};
-    double wave = 0;
+    double wave[TYPES][2] = {{0}};
     assert_ok(mf_particles_init(&particles, &box, COUNT));
     mf_placement_lattice(&particles, 0, 1);
     mf_placement_mix(&particles, 7);
-    mf_placement_tilt(&particles, 3, 7);
+    mf_placement_tilt(&particles, 0.6, 7);
     for (size_t k = 0; k < COUNT; k++) {
+        const double angle = 2 * M_PI * particles.position[1][k] / 20;
+        double *own = wave[particles.id[k] / (COUNT / TYPES)];
         assert_false(found[particles.id[k]]);
         found[particles.id[k]] = true;
-        if (particles.id[k] < COUNT / 2)
-            wave += cos(2 * M_PI * particles.position[1][k] / 20);
+        own[0] += cos(angle);
+        own[1] += sin(angle);
     }
-    print_message("amplitude %.0f\n", wave);
-    assert_true(wave < -60 && wave > -200);
+    for (int type = 0; type < TYPES; type++) {
+        const double amplitude = hypot(wave[type][0], wave[type][1]);
+        print_message("amplitude of type %d: %.0f\n", type, amplitude);
+        assert_true(amplitude > 55 && amplitude < 150);
+    }
     mf_particles_clear(&particles);
 }
 
@@ -284,7 +289,7 @@ int main(void) {
         cmocka_unit_test(test_placement_lattice_keeps_particles_apart_when_count_is_odd),
         cmocka_unit_test(test_placement_lattice_shifts_within_the_jitter_when_asked),
         cmocka_unit_test(test_placement_mix_exchanges_ids_when_asked),
-        cmocka_unit_test(test_placement_tilt_makes_a_wave_of_composition),
+        cmocka_unit_test(test_placement_tilt_makes_a_wave_of_each_type),
         cmocka_unit_test(test_placement_random_keeps_the_separation_when_there_is_room),
         cmocka_unit_test(test_placement_random_is_uniform_when_there_is_no_separation),
         cmocka_unit_test(test_placement_disordered_has_no_planes_when_the_count_is_a_cube),
