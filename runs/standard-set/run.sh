@@ -10,6 +10,7 @@
 # PROGRAM  default: build/mesofit
 # OUT      results, table.tsv, table.md, time.md, notes.md and standard-set.png; default: out beside this script
 # SEED     of the fits, instead of that of the program
+# START    mean-force: begin with the potential of mean force
 # THREADS  default: 2
 # LIMIT    seconds of processor time a system; default: 960, eight minutes of two cores
 # TABLE    1: no fit, the table of what OUT holds
@@ -18,7 +19,8 @@ export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive
 here=$(cd "$(dirname "$0")" && pwd)
 program=$(realpath "${PROGRAM:-$here/../../build/mesofit}")
 seed=${SEED:-}
-out=${OUT:-$here/out${seed:+/seed-$seed}}
+start=${START:-}
+out=${OUT:-$here/out${seed:+/seed-$seed}${start:+/$start}}
 threads=${THREADS:-2}
 limit=${LIMIT:-960}
 systems="
@@ -55,11 +57,18 @@ run_file() {
 digest() {
     {
         cat "$program" "$1"
-        sed -n 's/.*"file": *"\([^"]*\)".*/\1/p' "$1" | while IFS= read -r name; do
+        sed -n 's/.*"file":[[:space:]]*"\([^"]*\)".*/\1/p' "$1" | while IFS= read -r name; do
             cat "$(dirname "$1")/$name"
         done
-        echo "$seed $limit"
+        echo "$seed $limit $start"
     } | sha256sum | cut -d ' ' -f 1
+}
+
+# $1 run file, $2 folder: the run file that is fitted, a copy with the start if one is asked for.
+begin_with() {
+    [ -n "$start" ] || { echo "$1" && return; }
+    sed "0,/{/ s|{|{\"method\": {\"name\": \"auto\", \"start\": \"$start\"},|; s|\(\"file\":[[:space:]]*\"\)|\1$(dirname "$1")/|g" "$1" >"$2/run.json"
+    echo "$2/run.json"
 }
 
 # $1 system. Its folder holds the result in fit/, what the program said in messages, a line "wall user system" of
@@ -80,11 +89,12 @@ fit() {
         echo "$now" >"$folder/begun"
     fi
     echo "$1" >&2
+    begins=$(begin_with "$file" "$folder")
     code=0
     used=$(awk '{ used += $2 + $3 } END { printf "%d", used }' "$folder/seconds" 2>/dev/null) || used=0
     (
         ulimit -c 0 && ulimit -S -t $((limit > used ? limit - used : 1))
-        exec /usr/bin/time -a -o "$folder/seconds" -f '%e %U %S' "$program" fit "$file" -o "$folder/fit" \
+        exec /usr/bin/time -a -o "$folder/seconds" -f '%e %U %S' "$program" fit "$begins" -o "$folder/fit" \
             --threads "$threads" --quiet ${seed:+--seed "$seed"} $resume >>"$folder/messages" 2>&1
     ) || code=$?
     echo "$code" >"$folder/code"
@@ -173,7 +183,7 @@ for name in $systems; do
     [ ! -e "$out/$name/ended" ] || [ ! -e "$out/$name/fit/summary.json" ] || ended+=("$out/$name/fit")
 done
 "$here/time.sh" "${ended[@]}" >"$out/time.md"
-if [ -n "$all" ] && [ -z "$seed" ] && [ -z "${TABLE:-}" ]; then
+if [ -n "$all" ] && [ -z "$seed$start" ] && [ -z "${TABLE:-}" ]; then
     cp "$out/table.tsv" "$out/standard-set.png" "$here"
     awk -v table="$out/table.md" -v notes="$out/notes.md" '
         function insert(file,    line) { while ((getline line <file) > 0) print line }
