@@ -21,6 +21,14 @@ function percent(key, less) {
 
 function text(key, format) { return number(key) == "nan" ? "nan" : sprintf(format, value[key]) }
 
+# How far the pressure is from the true one, in what is left open and the errors of both.
+function openings(    missing) {
+    if (number("pressure") == "nan" || number("true_pressure") == "nan")
+        return "nan"
+    missing = value["pressure"] - value["true_pressure"]
+    return sprintf("%.2f", missing / sqrt(value["pressure_left_open"] ^ 2 + value["pressure_error"] ^ 2 + value["true_pressure_error"] ^ 2))
+}
+
 function status() {
     if (value["code"] == 2 || value["code"] == 3)
         return "refused"
@@ -38,6 +46,7 @@ END {
     printf "\t%s\t%s\t%s\t%s", percent("temperature", 1), percent("temperature_error", 0),
         percent("temperature_configurational", 1), percent("temperature_configurational_error", 0)
     printf "\t%s\t%s\t%s", text("pressure", "%.5g"), text("pressure_error", "%.2g"), text("pressure_left_open", "%.2g")
+    printf "\t%s", openings()
     printf "\t%s\t%s\t%s", number("z"), number("z_without_way"), number("z_bonded")
     printf "\t%s\t%s\t%s\t%s\n", ratio("rdf_rmse_error", "rdf_noise"), ratio("bond_lengths_rmse_error", "bond_lengths_noise"),
         ratio("bond_angles_rmse_error", "bond_angles_noise"), ratio("dihedral_angles_rmse_error", "dihedral_angles_noise")

@@ -107,7 +107,7 @@ row() {
     folder=$out/$1
     result=$folder/fit
     if [ ! -e "$folder/ended" ]; then
-        printf '%s\t-%s\n' "$1" "$(printf '\tnan%.0s' $(seq 21))"
+        printf '%s\t-%s\n' "$1" "$(printf '\tnan%.0s' $(seq 22))"
         return
     fi
     truths=
@@ -124,6 +124,7 @@ row() {
         awk '{ wall += $1; processor += $2 + $3 } END { print "wall", wall; print "processor", processor }' \
             "$folder/seconds"
         echo "code $(cat "$folder/code")"
+        awk -F '\t' -v name="$1" '$1 == name { print "true_pressure", $2; print "true_pressure_error", $3 }' "$here/pressures.tsv"
         sed -n 's/.*"temperature":[[:space:]]*\([0-9.]*\).*/wanted \1/p' "$file" | tail -n 1
         echo "$truths"
         [ ! -e "$result/history.tsv" ] || grep -vc '^#' "$result/history.tsv" | sed 's/^/passed /'
@@ -166,7 +167,7 @@ fi
 
 {
     printf '# system\tstatus\titerations\twall[s]\tprocessor[s]\tg\tlengths\tangles\tdihedrals\ttemperature[%%]\terror[%%]'
-    printf '\tconfigurational[%%]\terror[%%]\tpressure\terror\topen\tz\tz_without_way\tz_bonded'
+    printf '\tconfigurational[%%]\terror[%%]\tpressure\terror\topen\toff\tz\tz_without_way\tz_bonded'
     printf '\tg_error\tlengths_error\tangles_error\tdihedrals_error\n'
     for name in $systems; do
         row "$name"

@@ -50,9 +50,9 @@ set title "{/:Italic Φ} − truth, rms in stated errors"
 set logscale x
 set xrange [0.3:30]
 set arrow 1 from 1.3, graph 0 to 1.3, graph 1 nohead dashtype 2 linecolor rgb ink
-plot table using (within(17, 0.31, 29)):0 with points pointtype 7 linecolor rgb blue title "Φ", \
-    "" using (within(18, 0.31, 29)):0 with points pointtype 6 linecolor rgb blue title "without the open way", \
-    "" using (within(19, 0.31, 29)):0 with points pointtype 5 linecolor rgb vermillion title "bonded"
+plot table using (within(18, 0.31, 29)):0 with points pointtype 7 linecolor rgb blue title "Φ", \
+    "" using (within(19, 0.31, 29)):0 with points pointtype 6 linecolor rgb blue title "without the open way", \
+    "" using (within(20, 0.31, 29)):0 with points pointtype 5 linecolor rgb vermillion title "bonded"
 
 set lmargin at screen 0.84
 set key at screen 0.91, screen 0.065 center top horizontal maxcols 2 samplen 0.5
