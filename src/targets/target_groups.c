@@ -166,16 +166,18 @@ static void write(const struct target_files *files, int kind, struct json_writer
     }
 }
 
-/// What the errors of all groups are of: of bins if a file has none.
+/// What the errors of all groups are of: of bins if a file has none and does not say.
 static enum target_errors errors_of(const struct target_groups *groups) {
     bool samples = true;
     for (size_t g = 0; g < groups->groups; g++) {
         const struct target_bonded *member = &groups->member[g];
         if (member->bins.count == 0)
             continue;
-        if (member->estimated_error > 0 || member->parameters.errors_of == TARGET_ERRORS_OF_BINS)
+        const bool says = member->parameters.errors_of == TARGET_ERRORS_OF_SAMPLES;
+        if ((member->estimated_error > 0 && !says) ||
+            member->parameters.errors_of == TARGET_ERRORS_OF_BINS)
             return TARGET_ERRORS_OF_BINS;
-        samples = samples && member->parameters.errors_of == TARGET_ERRORS_OF_SAMPLES;
+        samples = samples && says;
     }
     return samples ? TARGET_ERRORS_OF_SAMPLES : TARGET_ERRORS_UNKNOWN;
 }

@@ -224,17 +224,18 @@ static void write(const struct target_files *files, int kind, struct json_writer
     }
 }
 
-/// What the errors of all pair types are of: of bins if a file has none.
+/// What the errors of all pair types are of: of bins if a file has none and does not say.
 static enum target_errors errors_of(const struct target_pairs *target) {
     bool samples = true;
     for (size_t pair = 0; pair < target->pairs; pair++) {
         const struct target_rdf *rdf = &target->member[pair];
         if (rdf->bins.count == 0)
             continue;
-        if (rdf->estimated_error > 0 || rdf->resampling.error > 0 ||
+        const bool says = rdf->parameters.errors_of == TARGET_ERRORS_OF_SAMPLES;
+        if ((rdf->estimated_error > 0 && !says) || rdf->resampling.error > 0 ||
             rdf->parameters.errors_of == TARGET_ERRORS_OF_BINS)
             return TARGET_ERRORS_OF_BINS;
-        samples = samples && rdf->parameters.errors_of == TARGET_ERRORS_OF_SAMPLES;
+        samples = samples && says;
     }
     return samples ? TARGET_ERRORS_OF_SAMPLES : TARGET_ERRORS_UNKNOWN;
 }

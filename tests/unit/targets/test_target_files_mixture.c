@@ -94,6 +94,30 @@ static void test_targets_read_cuts_pairs_to_the_shortest(void **state) {
     mf_target_files_clear(&t);
 }
 
+/// What errors are of is said by all files together: a table without errors has those of the
+/// scatter of its rows, each bin's own unless it says that they are of samples.
+static void test_targets_read_tells_what_errors_are_of(void **state) {
+#define SAYS(pair, file) "\"" pair "\": {\"file\": \"" file "\", \"errors_of\": \"samples\"}"
+    static const struct {
+        const char *members;
+        enum target_errors of;
+    } cases[] = {{AA ", " AB ", " BB, TARGET_ERRORS_UNKNOWN},
+                 {AA ", " AB ", " SAYS("B-B", "bb.tsv"), TARGET_ERRORS_UNKNOWN},
+                 {AA ", " AB ", \"B-B\": {\"file\": \"none.tsv\"}", TARGET_ERRORS_OF_BINS},
+                 {SAYS("A-A", "aa.tsv") ", " SAYS("A-B", "ab.tsv") ", " SAYS("B-B", "none.tsv"),
+                  TARGET_ERRORS_OF_SAMPLES}};
+    write_tables(state);
+    put(state, "none.tsv", "0.05 0\n0.15 0.7\n0.25 1.7\n0.35 1.2\n");
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct target_files t;
+        struct targets fitted, compared;
+        assert_ok(read(state, cases[k].members, &t));
+        mf_target_files_targets(&t, false, &fitted, &compared);
+        assert_int_equal(fitted.target[TARGET_RDF].errors_of, cases[k].of);
+        mf_target_files_clear(&t);
+    }
+}
+
 static void assert_refused(void **state, const char *members, const char *first,
                            const char *second) {
     struct target_files t;
@@ -205,6 +229,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_targets_read_takes_pairs_in_any_order_and_either_name),
         TEST(test_targets_read_cuts_pairs_to_the_shortest),
+        TEST(test_targets_read_tells_what_errors_are_of),
         TEST(test_targets_read_refuses_a_mixture_that_is_not_complete),
         TEST(test_targets_write_gives_a_mixture_back),
         TEST(test_targets_read_converts_every_pair_by_all_particles),
