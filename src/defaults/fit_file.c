@@ -12,6 +12,7 @@
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
 #include "defaults/methods.h"
+#include "io/text_file.h"
 
 #include <math.h>
 #include <string.h>
@@ -321,8 +322,8 @@ static enum status parse_others(struct fit_file *fit, const struct reading *firs
     return STATUS_OK;
 }
 
-enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
-                              const struct run_options *options) {
+static enum status parse(struct fit_file *fit, const char *file,
+                         const struct run_options *options) {
     struct reading reading = {file, options, 0, NULL, 0, NULL};
     TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
     TRY(parse_others(fit, &reading));
@@ -331,6 +332,14 @@ enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
         state_problem(mf_fit_states_at(fit, s), options);
     mf_fit_states_link(fit);
     return STATUS_OK;
+}
+
+enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
+                              const struct run_options *options) {
+    mf_text_file_keep();
+    const enum status status = parse(fit, file, options);
+    mf_text_file_forget();
+    return status;
 }
 
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
