@@ -252,7 +252,8 @@ static double what_pays(double wanted, double needed, double little, double max)
 }
 
 /// What the file says of the verification, or what is chosen.
-static double given_or(const struct fit_choice *c, const char *key, int64_t given, double chosen) {
+static double given_or_chosen(const struct fit_choice *c, const char *key, int64_t given,
+                              double chosen) {
     return mf_fit_choice_lacks(c->root, "verification", key) ? chosen : (double)given;
 }
 
@@ -263,9 +264,9 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
     enum target_kind longest;
     const struct verify_parameters *read = &c->read->verification;
     const double time_step = read->time_step > 0 ? read->time_step : c->time_step;
-    const double replicas = given_or(c, "replicas", read->replicas, 4);
-    const double every =
-        given_or(c, "every", read->plan.every, fmax(1, round(apart * c->crossing / time_step)));
+    const double replicas = given_or_chosen(c, "replicas", read->replicas, 4);
+    const double every = given_or_chosen(c, "every", read->plan.every,
+                                         fmax(1, round(apart * c->crossing / time_step)));
     const double begin = fmax(1000, ceil(equilibration * c->crossing / time_step));
     const double window =
         (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);

@@ -135,7 +135,7 @@ static void add_memory(struct entries *entries, const struct scene_memory *memor
 
 /// Where the potential of pairs is unknown, a share of it is no unknown of its own: the slope of f
 /// at the origin stays what the scene says.
-static void fix_share_of_pairs(struct entries *entries, const struct scene *scene) {
+static void fix_linear_term_of_embedding(struct entries *entries, const struct scene *scene) {
     static const char name[] = ".energy.c1";
     for (size_t k = 0; entries->entry && k < entries->count; k++) {
         struct entry *entry = &entries->entry[k];
@@ -168,7 +168,7 @@ static void add_densities(struct entries *entries, const struct scene *scene) {
                 &(struct entry){.place = laws[k].place, .part = t}, laws[k].curve->parameters);
         }
     }
-    fix_share_of_pairs(entries, scene);
+    fix_linear_term_of_embedding(entries, scene);
 }
 
 /// Laws of bonds, angles and dihedrals: "bonds.backbone.k".

@@ -52,7 +52,7 @@ struct integrator {
     bool model_time_step;
     /// Tells a simulation's `transfer` all impulses of pairs: those that are forces when these are
     /// computed, others by itself. Momentum is conserved.
-    bool tells_transfer;
+    bool records_momentum_transfer;
     bool masses; ///< moves particles of different masses; else a scene with any is refused
     /// What it makes of ω, if it splits friction and noise off the forces; NULL: they are forces.
     const struct friction_method *friction;

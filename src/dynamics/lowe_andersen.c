@@ -46,7 +46,7 @@ const struct integrator mf_lowe_andersen = {
                "Lett. 47, 145 (1999)",
     .fields = fields,
     .dissipative = true,
-    .tells_transfer = true,
+    .records_momentum_transfer = true,
     .friction = &collisions,
     .step = step,
 };

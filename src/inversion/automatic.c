@@ -28,7 +28,7 @@ static bool may_be_in_basin(const struct inversion *inversion) {
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
     return mf_inversion_is_near(inversion) ||
            (!start && !mf_potential_grid_has_terms(inversion_grid(inversion)) &&
-            inversion->assessment.distance[TARGET_RDF].rms < again * progress->failed_error);
+            inversion->assessment.distance[TARGET_RDF].rms < again * progress->newton_failed_error);
 }
 
 static enum status careful_step(struct inversion_state *state, double *step) {

@@ -117,7 +117,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
 /// what has not settled is half of it at most. A potential that is far off may freeze a liquid
 /// or make it cavitate, which takes very long and gives no better direction to the target. Tested:
 /// test_inversion_equilibrium.
-bool mf_inversion_gives_direction(const struct inversion_state *state);
+bool mf_inversion_is_far_beyond_drift(const struct inversion_state *state);
 
 /// Whether the assessment of all is near, as mf_inversion_state_is_near.
 bool mf_inversion_is_near(const struct inversion *inversion);

@@ -205,7 +205,7 @@ static void add_walk(struct inversion *inversion, double *scratch) {
     const struct potential_grid *grid = inversion_grid(inversion);
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
-        scratch[a] = inversion->course.best.phi[point] - inversion->course.met_phi[point];
+        scratch[a] = inversion->course.best.phi[point] - inversion->course.first_met_phi[point];
     }
     add_square(inversion, 1, scratch);
 }
@@ -370,7 +370,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, birge, step));
     find_drifts(inversion, step, weight, scratch);
-    if (inversion->course.has_walked) {
+    if (inversion->course.moved_since_met) {
         add_walk(inversion, scratch);
         CHECK(take_conventions_off(inversion, band->covariance));
     }

@@ -29,7 +29,7 @@
 ///
 /// Φ follows the target bin by bin, beginning with −ln g, and what noise a bin has there stays in
 /// it, however smooth the prior, and so does that of the samples: where these have few counts, as
-/// in the first bins of a core, the error of Φ is at least theirs (mf_inversion_band_of_counts).
+/// in the first bins of a core, the error of Φ is at least theirs (mf_inversion_poisson_error).
 ///
 /// C is itself sampled, in few functions (inversion_covariance.h). What is least known follows the
 /// smallest eigenvalues, and those of a sampled covariance come out too small: the band of few
@@ -65,7 +65,7 @@ struct inversion_band {
 /// Standard deviation of ln λ of a Poisson distribution with the mean λ of which so many were
 /// counted: that of its posterior, a gamma distribution of the shape counts + ½ by H. Jeffreys's
 /// prior; 0 of infinitely many. Tested: test_inversion_band.
-double mf_inversion_band_of_counts(double counts);
+double mf_inversion_poisson_error(double counts);
 
 /// What the counts of the targets and those of the samples allow the error of Φ of a known bin to
 /// be at least: both of all states together, of which some have none there, and exact targets

@@ -6,7 +6,7 @@
 #include <gsl/gsl_sf_psi.h>
 #include <math.h>
 
-double mf_inversion_band_of_counts(double counts) {
+double mf_inversion_poisson_error(double counts) {
     return isfinite(counts) ? sqrt(gsl_sf_psi_1(counts + 0.5)) : 0;
 }
 
@@ -32,7 +32,7 @@ static double error_of_counts(const struct inversion *inversion, const struct co
         return 0;
     const double temperature =
         all->counts > 0 ? sqrt(all->counts / all->weighed) : inversion->problem->scene.temperature;
-    return temperature * mf_inversion_band_of_counts(all->counts);
+    return temperature * mf_inversion_poisson_error(all->counts);
 }
 
 /// The variance of a group's target that is noise of each bin by itself grows with its counts as

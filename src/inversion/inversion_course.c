@@ -18,7 +18,7 @@ enum status mf_inversion_course_init(struct inversion_course *course, size_t kno
     NEW_ARRAY(course->best.step, points);
     NEW_ARRAY(course->best.other_step, points);
     NEW_ARRAY(course->best.counts, bins);
-    NEW_ARRAY(course->met_phi, points);
+    NEW_ARRAY(course->first_met_phi, points);
     CHECK(mf_inversion_band_init(&course->band, known, points));
     course->progress = (struct inversion_progress){.from_disorder = true,
                                                    .stretch = 1,
@@ -31,9 +31,9 @@ done:
 }
 
 void mf_inversion_course_clear(struct inversion_course *course) {
-    double *arrays[] = {course->phi,         course->step,      course->other_step,
-                        course->best.phi,    course->best.step, course->best.other_step,
-                        course->best.counts, course->met_phi};
+    double *arrays[] = {course->phi,         course->step,         course->other_step,
+                        course->best.phi,    course->best.step,    course->best.other_step,
+                        course->best.counts, course->first_met_phi};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
     mf_inversion_band_clear(&course->band);
@@ -42,7 +42,7 @@ void mf_inversion_course_clear(struct inversion_course *course) {
 size_t mf_inversion_course_spans(struct inversion_course *course, size_t points, size_t bins,
                                  struct memory_span *span) {
     double *curves[] = {course->phi, course->best.phi, course->best.step, course->best.other_step,
-                        course->met_phi};
+                        course->first_met_phi};
     size_t n = 0;
     span[n++] = (struct memory_span){&course->progress, sizeof course->progress};
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)
@@ -110,7 +110,7 @@ static void go_back(struct inversion *inversion) {
     }
     memcpy(course->best.step, course->best.other_step,
            inversion_grid(inversion)->points * sizeof(double));
-    course->progress.failed_error = course->progress.best.distance[TARGET_RDF].rms;
+    course->progress.newton_failed_error = course->progress.best.distance[TARGET_RDF].rms;
     course->progress.has_other = false;
     course->progress.damping = 1;
 }
@@ -124,8 +124,8 @@ static bool keeps_by_gradient(struct inversion *inversion) {
     return kept;
 }
 
-bool mf_inversion_is_near_enough(const struct inversion *inversion,
-                                 const struct inversion_assessment *assessment) {
+bool mf_inversion_is_worth_keeping(const struct inversion *inversion,
+                                   const struct inversion_assessment *assessment) {
     const struct inversion_progress *progress = &inversion->course.progress;
     const struct targets *targets = &inversion->problem->targets;
     return isinf(progress->best.distance[TARGET_RDF].rms) ||
@@ -139,7 +139,7 @@ bool mf_inversion_keeps(struct inversion *inversion) {
     const struct targets *targets = &inversion->problem->targets;
     if (inversion->state->basis.count > 0)
         return keeps_by_gradient(inversion);
-    const bool kept = mf_inversion_is_near_enough(inversion, assessment);
+    const bool kept = mf_inversion_is_worth_keeping(inversion, assessment);
     if (isinf(progress->best.distance[TARGET_RDF].rms) ||
         mf_inversion_assessment_noises(assessment, targets, assessment->distance) <
             mf_inversion_assessment_noises(assessment, targets, progress->min))
@@ -158,7 +158,7 @@ enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) 
     if (start && !*kept)
         return keep(inversion); // to have something to show
     if (start)
-        progress->first_error = progress->second_error = progress->failed_error = error;
+        progress->first_error = progress->second_error = progress->newton_failed_error = error;
     else if (progress->second_error == progress->first_error)
         progress->second_error = error;
     if (!*kept) {

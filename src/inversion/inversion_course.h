@@ -41,7 +41,8 @@ struct inversion_progress {
     struct target_distance min[TARGETS]; ///< nearest so far, of all that was kept
     double min_decrement;                ///< of what was kept, by the gradient
     double first_error, second_error;    ///< of g, in the first two iterations from a start
-    double failed_error; ///< of g, from where a step with another in reserve led away, or the first
+    double newton_failed_error; ///< of g, from where a step with another in reserve led away, or
+                                ///< the first
     struct inversion_drifts drifts;
     bool second_start; ///< it began again, from −k_B T ln g
     bool lost;         ///< none of the starts settled
@@ -57,8 +58,8 @@ struct inversion_course {
         double *phi, *step, *other_step;
         double *counts; ///< ⟨S⟩ of one state after the other, shape [bins of all]
     } best;
-    double *met_phi;            ///< of the first iteration since then that met the targets
-    bool has_walked;            ///< the fit ends elsewhere: the way from there is an error
+    double *first_met_phi;      ///< of the first iteration since then that met the targets
+    bool moved_since_met;       ///< the fit ends elsewhere: the way from there is an error
     struct inversion_band band; ///< of the best
     struct inversion_progress progress;
 };
@@ -77,8 +78,8 @@ size_t mf_inversion_course_spans(struct inversion_course *course, size_t points,
 extern const double mf_inversion_min_damping;
 
 /// Whether distances are near enough to the targets for their potential to be kept.
-bool mf_inversion_is_near_enough(const struct inversion *inversion,
-                                 const struct inversion_assessment *assessment);
+bool mf_inversion_is_worth_keeping(const struct inversion *inversion,
+                                   const struct inversion_assessment *assessment);
 
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
@@ -129,10 +130,10 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 /// too low. They need not follow on each other: by the noise of C chi^2 of hexane swings about its
 /// bound. One that meets its targets eight times and goes on ends, too: hexane's g(r) of two types
 /// of beads was met for 17 iterations, in which the pressure fell by 900 bar. Each potential that
-/// met the targets is possible: the way since the first of them counts as an error (`has_walked`).
-/// Of two Lennard-Jones liquids whose table has no errors fits ended at 4400, 6000 and 12,000 bar,
-/// with stated errors of 400 to 700, and the truth is 104. Iterations that are not kept, or whose
-/// samples have not settled, do not count. Tested: test_inversion_converged.
+/// met the targets is possible: the way since the first of them counts as an error
+/// (`moved_since_met`). Of two Lennard-Jones liquids whose table has no errors fits ended at 4400,
+/// 6000 and 12,000 bar, with stated errors of 400 to 700, and the truth is 104. Iterations that are
+/// not kept, or whose samples have not settled, do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Why a fit that has finished did not converge, in words.

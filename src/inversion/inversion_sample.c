@@ -102,8 +102,8 @@ struct sampling {
 
 /// Whether the section is so far from its targets that what has not settled hardly changes the way
 /// to them.
-static bool section_gives_direction(const struct inversion_state *state,
-                                    const struct inversion_section *section) {
+static bool section_is_far_beyond_drift(const struct inversion_state *state,
+                                        const struct inversion_section *section) {
     double squares = 0, seen = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = state->grid.known_bin[a];
@@ -114,12 +114,12 @@ static bool section_gives_direction(const struct inversion_state *state,
     return squares < seen * section->misfit * pow(find_share(state, section), 2);
 }
 
-bool mf_inversion_gives_direction(const struct inversion_state *state) {
+bool mf_inversion_is_far_beyond_drift(const struct inversion_state *state) {
     const struct targets *targets = &state->problem->targets;
     if (state->basis.count > 0) // what is off may be out of reach of the gradient
         return false;
     for (int k = 0; k < state->assessment.sections; k++)
-        if (!section_gives_direction(state, &state->assessment.section[k]))
+        if (!section_is_far_beyond_drift(state, &state->assessment.section[k]))
             return false;
     return !targets_ask(targets, TARGET_PRESSURE) ||
            mf_inversion_pressure_shift(state) <
@@ -141,7 +141,7 @@ static bool is_hopeless(struct sampling *sampling) {
                              mf_inversion_assessment_noises(assessment, targets, sampling->before);
     const bool other = mf_inversion_start_has_other(inversion, sampling->state);
     const bool lost =
-        other || (inversion->states == 1 && !mf_inversion_is_near_enough(inversion, assessment));
+        other || (inversion->states == 1 && !mf_inversion_is_worth_keeping(inversion, assessment));
     const bool worse = sampling->state->basis.count == 0 && farther && lost;
     const bool poor = other && inversion->course.progress.iteration == 0 &&
                       mf_inversion_start_is_under_tension(sampling->state, assessment);
@@ -213,7 +213,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     TRY(take(&sampling, false));
     sampling.progress.done = sampling.progress.total = replicas;
     for (;;) {
-        const bool waits = unequilibrated->found && !mf_inversion_gives_direction(state);
+        const bool waits = unequilibrated->found && !mf_inversion_is_far_beyond_drift(state);
         if (waits && is_hopeless(&sampling))
             break;
         if (waits)
@@ -225,7 +225,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     }
     unequilibrated->sweeps = sampling.sweeps;
     state->work.memory = state->inefficiency * (double)sampling.plan.every;
-    state->assessment.useless = unequilibrated->found && !mf_inversion_gives_direction(state);
+    state->assessment.useless = unequilibrated->found && !mf_inversion_is_far_beyond_drift(state);
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

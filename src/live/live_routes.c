@@ -177,7 +177,7 @@ struct wished {
 };
 
 #define MEMBER(name) .offset = offsetof(struct wished, name)
-static const struct field wish_fields[] = {
+static const struct field request_fields[] = {
     {"wish", FIELD_CHOICE, MEMBER(wish), .required = true, .choices = wishes, .unit = "",
      .help = "what the run is to do"},
     {"steps", FIELD_INTEGER, MEMBER(steps), .initial = 1, .minimum = 1, .maximum = 1e9,
@@ -205,7 +205,7 @@ static enum status read_wish(const struct live_request *request, struct wished *
     mf_text_file_set_memory_files(NULL, 0);
     TRY(status);
     struct json_object root = mf_json_root(document);
-    mf_json_fields(&root, wish_fields, wished);
+    mf_json_fields(&root, request_fields, wished);
     mf_json_finish(&root);
     return mf_json_close(document, STATUS_OK);
 }

@@ -159,7 +159,7 @@ static int by_size(const void *a, const void *b) {
 /// Weights of rows that the model misses by more than twice as much as the middle one fall as the
 /// inverse square, as if all missed as much: a few candidates far away, where a liquid is none,
 /// would drown the others (P. J. Huber, Robust Statistics (1981)).
-static enum status weigh_down(struct surrogate_work *work) {
+static enum status reduce_outlier_weights(struct surrogate_work *work) {
     static const double usual = 2;
     OWNED double *miss = NULL, *sorted = NULL;
     TRY_ARRAY(miss, work->rows);
@@ -195,7 +195,7 @@ enum status mf_surrogate_fit_rows(struct surrogate_work *work, const struct surr
     for (int round = 0; robust && round < ROUNDS; round++) {
         for (size_t k = 0; k < rows; k++)
             work->weight[k] = near_weight(work, k);
-        TRY(weigh_down(work));
+        TRY(reduce_outlier_weights(work));
         reset_fit(work);
         fit_weighted(work);
     }

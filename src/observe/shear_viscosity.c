@@ -73,7 +73,7 @@ static enum status check(const struct simulation *simulation, bool driven) {
                               "shear_viscosity: a wave heats the fluid, and \"%s\" has no friction "
                               "between pairs here that would cool it",
                               name);
-    if (!driven && (!setup->integrator->tells_transfer || mf_respa_acts(setup)))
+    if (!driven && (!setup->integrator->records_momentum_transfer || mf_respa_acts(setup)))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "shear_viscosity: \"%s\"%s does not give the momentum that pairs "
                               "exchange; \"aboba\" and \"velocity-verlet\" do without "

@@ -231,7 +231,7 @@ static const char *axis_name(const struct state *s) {
 }
 
 /// Why there are no numbers.
-static enum status tell_none(const struct state *s, const struct found *found) {
+static enum status warn_no_slab(const struct state *s, const struct found *found) {
     const char *const axis = axis_name(s);
     if (found->fit.liquid_bins < 2 || found->fit.vapour_bins < 2)
         return mf_status_fail(STATUS_UNCONVERGED,
@@ -258,7 +258,7 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     (void)setup;
     TRY(find(s, &found));
     if (!found.is_slab)
-        return tell_none(s, &found);
+        return warn_no_slab(s, &found);
     return mf_equilibrium_check("surface tension", sample_series_column(&s->series, TENSION),
                                 s->series.count);
 }

@@ -60,8 +60,8 @@ static enum status score(const struct measurement *measurement, struct observed 
 
 /// Whether a running result says enough: that the candidate cannot win (racing: O. Maron and A. W.
 /// Moore, Artif. Intell. Rev. 11, 193 (1997)), or its error as well as is wanted.
-static bool says_enough(const struct evaluate_result *result, double discard_above,
-                        const struct evaluate_parameters *parameters) {
+static bool is_decided(const struct evaluate_result *result, double discard_above,
+                       const struct evaluate_parameters *parameters) {
     const double chance = sqrt(result->variance);
     if (!isfinite(result->error) || !(result->noise > 0))
         return false;
@@ -87,7 +87,7 @@ static enum status sample(struct measurement *measurement, double discard_above,
             continue;
         TRY(mf_measure_sample(&measurement->simulation, &so_far, measurement->use, NULL));
         TRY(score(measurement, observed, result));
-        result->stopped = says_enough(result, discard_above, parameters);
+        result->stopped = is_decided(result, discard_above, parameters);
         if (result->stopped)
             return STATUS_OK;
     }

@@ -27,7 +27,7 @@ static bool knows_pairs(const struct inverse_problem *problem, size_t bin) {
 }
 
 /// The same of this problem's target or that of another state.
-static bool one_knows_pairs(const struct inverse_problem *problem, size_t bin) {
+static bool target_has_pairs(const struct inverse_problem *problem, size_t bin) {
     bool known = knows_pairs(problem, bin);
     for (size_t s = 0; s < problem->states; s++)
         known = known || knows_pairs(problem->state[s], bin);
@@ -52,9 +52,9 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
         return STATUS_OK;
     }
     while (*core < grid->bins &&
-           (max_pairs(problem, first + *core) <= well || !one_knows_pairs(problem, first + *core)))
+           (max_pairs(problem, first + *core) <= well || !target_has_pairs(problem, first + *core)))
         (*core)++;
-    while (*core > 0 && one_knows_pairs(problem, first + *core - 1))
+    while (*core > 0 && target_has_pairs(problem, first + *core - 1))
         (*core)--;
     if (*core + MIN_KNOWN > grid->bins)
         for (*core = 0;

@@ -6,9 +6,9 @@
 #include <math.h>
 #include <stdio.h>
 
-struct fit_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
-                                              enum unknown_kind kind, const double *curve,
-                                              const double *error) {
+struct curve_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
+                                                enum unknown_kind kind, const double *curve,
+                                                const double *error) {
     static const double standard_errors = 2;
     double squares = 0, errors = 0, seen = 0, points = 0;
     for (size_t k = 0; k < mf_unknowns_points(unknowns, kind); k++) {
@@ -19,7 +19,7 @@ struct fit_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
         errors += error[k] * error[k];
         seen += curve[k] > standard_errors * error[k];
     }
-    return (struct fit_knowledge){sqrt(squares / points), sqrt(errors / points), seen / points};
+    return (struct curve_knowledge){sqrt(squares / points), sqrt(errors / points), seen / points};
 }
 
 bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *const curve[UNKNOWNS],
@@ -29,7 +29,7 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (!unknown_is_omega(kind) || curve[kind] == NULL)
             continue;
-        const struct fit_knowledge known =
+        const struct curve_knowledge known =
             mf_fit_closing_knowledge(unknowns, kind, curve[kind], error[kind]);
         if (!(known.seen < 0.5))
             continue;
@@ -133,7 +133,7 @@ static void print_friction(struct progress *to, const struct fit_file *fit,
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (!unknown_is_omega(kind) || result->curve[kind] == NULL)
             continue;
-        const struct fit_knowledge known = mf_fit_closing_knowledge(
+        const struct curve_knowledge known = mf_fit_closing_knowledge(
             unknowns, kind, result->curve[kind], result->curve_error[kind]);
         const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
         mf_unknowns_kind_name(unknowns, kind, name);

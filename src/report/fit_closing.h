@@ -7,15 +7,15 @@
 #include "report/progress.h"
 
 /// How well a curve is known over the points that are fitted.
-struct fit_knowledge {
+struct curve_knowledge {
     double rms, error; ///< of the curve and of its standard error
     double seen;       ///< share of the points that are two standard errors above 0; NaN: no errors
 };
 
 /// Of a friction weight. Tested: test_fit_closing.
-struct fit_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
-                                              enum unknown_kind kind, const double *curve,
-                                              const double *error);
+struct curve_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
+                                                enum unknown_kind kind, const double *curve,
+                                                const double *error);
 
 /// Whether more than half of a friction weight is noise: such a fit has not converged to it,
 /// however well its targets are met. Why, into `reason`. Tested: test_fit_closing.

@@ -145,7 +145,7 @@ static void print_changes(struct progress *to, const struct units *units,
             const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
             mf_units_suffix(units, mf_unknowns_unit(kind), unit);
             if (unknown_is_omega(kind)) {
-                const struct fit_knowledge known = mf_fit_closing_knowledge(
+                const struct curve_knowledge known = mf_fit_closing_knowledge(
                     unknowns, kind, result->curve[kind], result->curve_error[kind]);
                 if (isfinite(known.seen))
                     snprintf(well, sizeof well, " %.2g%.16s rms, error %.2g,", factor * known.rms,

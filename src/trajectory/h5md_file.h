@@ -6,7 +6,7 @@
 #include "trajectory/h5md_element.h"
 #include "trajectory/trajectory.h"
 
-/// All zero is closed.
+/// An open file; a struct of zeros is none.
 struct h5md_file {
     hid_t file, group;
     uint64_t bytes;     ///< of the file

@@ -86,7 +86,7 @@ static void test_transfer_is_told_by_all_integrators_that_say_so(void **state) {
     int tested = 0;
     for (size_t k = 0; mf_integrator_list[k]; k++) {
         struct fluid fluid;
-        if (!mf_integrator_list[k]->tells_transfer)
+        if (!mf_integrator_list[k]->records_momentum_transfer)
             continue;
         fluid_groot_warren(&fluid, COUNT, 0.0005);
         fluid.setup.integrator = mf_integrator_list[k];

@@ -231,8 +231,8 @@ static void test_inversion_band_of_counts_is_that_of_the_logarithm_of_their_mean
     (void)state;
     static const int counts[] = {1, 2, 5, 40};
     for (int k = 0; k < 4; k++)
-        assert_close(mf_inversion_band_of_counts(counts[k]), scatter_of_logarithm(counts[k]), 1e-4);
-    assert_close_relative(mf_inversion_band_of_counts(1e8), 1e-4, 1e-6);
+        assert_close(mf_inversion_poisson_error(counts[k]), scatter_of_logarithm(counts[k]), 1e-4);
+    assert_close_relative(mf_inversion_poisson_error(1e8), 1e-4, 1e-6);
 }
 
 /// Two states and one bin: by how many pairs were counted in each.

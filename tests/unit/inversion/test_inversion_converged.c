@@ -44,10 +44,10 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.drifts.pressure[0].drift = 0.4;
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_true(inversion->course.has_walked); // since it agreed for the first time
+    assert_true(inversion->course.moved_since_met); // since it agreed for the first time
     inversion = make_end(&end, 0);
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_false(inversion->course.has_walked);
+    assert_false(inversion->course.moved_since_met);
 }
 
 /// A way that is over once may be so by chance; what goes on goes on in one direction.
@@ -129,7 +129,7 @@ static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
     double phi[2] = {0, 0}, met[2] = {0, 0};
     inversion->state->grid.points = 2;
     inversion->course.phi = phi;
-    inversion->course.met_phi = met;
+    inversion->course.first_met_phi = met;
     inversion->course.band.drifts.ramp.drift = -0.06;
     for (int n = 0; n < 5; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(inversion, true));
@@ -139,7 +139,7 @@ static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
     for (int n = 0; n < INVERSION_MAX_DRIFTS - 1; n++, phi[0] += 1)
         assert_false(mf_inversion_has_converged(inversion, true));
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_true(inversion->course.has_walked);
+    assert_true(inversion->course.moved_since_met);
     assert_true(met[0] == 5);
 }
 

@@ -275,14 +275,14 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
         variance[n] = seen[n] = 1;
     section->probable = 1;
     section->misfit = 6 * 6;
-    assert_false(mf_inversion_gives_direction(samples));
+    assert_false(mf_inversion_is_far_beyond_drift(samples));
     section->misfit = 8 * 8;
-    assert_true(mf_inversion_gives_direction(samples));
+    assert_true(mf_inversion_is_far_beyond_drift(samples));
     samples->basis.count = 1; // g may be off for want of coefficients
-    assert_false(mf_inversion_gives_direction(samples));
+    assert_false(mf_inversion_is_far_beyond_drift(samples));
     samples->basis.count = 0;
     section->misfit = 1; // agreement of what may be elsewhere tells nothing
-    assert_false(mf_inversion_gives_direction(samples));
+    assert_false(mf_inversion_is_far_beyond_drift(samples));
     section->misfit = 14 * 14;
     // The pressure changes by 12/(3 V).
     for (size_t k = 0; k < REPLICAS; k++)
@@ -291,9 +291,9 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
                 12.0 * (double)b / REPLICAS_BLOCKS;
     problem.targets.target[TARGET_PRESSURE] = (struct target){.count = 1, .value = &wanted};
     samples->pressure.value = -6;
-    assert_false(mf_inversion_gives_direction(samples));
+    assert_false(mf_inversion_is_far_beyond_drift(samples));
     samples->pressure.value = -16;
-    assert_true(mf_inversion_gives_direction(samples));
+    assert_true(mf_inversion_is_far_beyond_drift(samples));
     gsl_rng_free(rng);
 }
 

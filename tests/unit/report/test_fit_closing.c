@@ -29,7 +29,7 @@ static void test_closing_tells_how_well_a_friction_weight_is_known(void **state)
     double omega[OMEGA_POINTS], error[OMEGA_POINTS];
     begin(&unknowns, &problem);
     fill(&unknowns, 0.25, omega, error);
-    const struct fit_knowledge known =
+    const struct curve_knowledge known =
         mf_fit_closing_knowledge(&unknowns, UNKNOWN_OMEGA, omega, error);
     assert_close(known.rms, 2, 1e-12);
     assert_close(known.seen, 0.25, 0.03);
