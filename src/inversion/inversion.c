@@ -31,17 +31,6 @@ static void report_of_state(void *context, const struct inverse_progress *own) {
     sharing->listener->report(sharing->listener->context, &all);
 }
 
-bool mf_inversion_pools(const struct inversion *inversion) {
-    return !((const struct inversion_rule *)inversion->method->own)->memoryless &&
-           inversion->state->basis.count == 0;
-}
-
-bool mf_inversion_goes_on(const struct inversion *inversion) {
-    const struct inversion_progress *progress = &inversion->course.progress;
-    return mf_inversion_pools(inversion) && !progress->ends &&
-           progress->iteration + 1 < inversion->parameters.iterations;
-}
-
 enum status mf_inversion_observe(struct inversion *inversion,
                                  const struct inverse_listener *listener) {
     for (size_t s = 0; s < inversion->states; s++) {

@@ -113,11 +113,6 @@ enum status mf_inversion_observe(struct inversion *inversion,
 enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,
                                 const struct inverse_listener *listener) MUST_USE;
 
-/// Whether steps near the targets go by the samples of several iterations; and the present one is
-/// not the last, whose samples are to be as exact as was asked for.
-bool mf_inversion_pools(const struct inversion *inversion);
-bool mf_inversion_goes_on(const struct inversion *inversion);
-
 /// Whether samples that have not settled do for a step: all that is asked for is so far off that
 /// what has not settled is half of it at most. A potential that is far off may freeze a liquid
 /// or make it cavitate, which takes very long and gives no better direction to the target. Tested:

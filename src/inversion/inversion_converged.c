@@ -130,13 +130,11 @@ static void record_drifts(const struct inversion *inversion, struct inversion_dr
 }
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
-    struct inversion_progress *progress = &inversion->course.progress;
-    struct inversion_drifts *drifts = &progress->drifts;
+    struct inversion_drifts *drifts = &inversion->course.progress.drifts;
     inversion->course.moved_since_met = false;
     if (!kept) // it goes back to the one before
         return false;
-    const bool precise = progress->best.precise;
-    const bool meets = (precise || mf_inversion_pools(inversion)) && meets_targets(inversion);
+    const bool meets = inversion->course.progress.best.precise && meets_targets(inversion);
     if (!meets && !mf_inversion_is_near(inversion))
         drifts->near = drifts->met = 0;
     else
@@ -151,7 +149,6 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
                grid->points * sizeof(double));
     const bool settled = drifts->met >= min && has_settled(inversion, min);
     const bool ends = !must_settle(inversion) || settled || drifts->met >= INVERSION_MAX_DRIFTS;
-    progress->ends = progress->ends || ends;
-    inversion->course.moved_since_met = ends && precise && drifts->met > 1;
-    return ends && precise;
+    inversion->course.moved_since_met = ends && drifts->met > 1;
+    return ends;
 }

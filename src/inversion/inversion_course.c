@@ -181,6 +181,5 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
     progress->damping = 1;
     progress->from_disorder = progress->second_start = true;
     progress->drifts = (struct inversion_drifts){0};
-    progress->ends = false;
     return mf_inversion_start_again(inversion->state, inversion->course.phi);
 }

@@ -32,7 +32,6 @@ struct inversion_drifts {
 /// What a checkpoint keeps besides arrays and samplers.
 struct inversion_progress {
     uint32_t iteration;
-    bool ends;             ///< but for samples as exact as was asked for
     bool from_disorder;    ///< the replicas are placed without order
     bool has_other;        ///< the best has another step
     double damping;        ///< part of the bounded step from the best, as the fit finds it

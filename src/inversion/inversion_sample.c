@@ -12,10 +12,6 @@
 /// not decide how many samples the others need.
 static const double noise_share = 0.5;
 
-/// Near the targets a step goes by the excess of several iterations (mf_inversion_pool), in which
-/// the present samples weigh a third at least: a third of the samples does for all but the last.
-static const double pooled_noise = 1.7320508075688772;
-
 /// A gradient below this many times its noise is hardly more than that: what g is still off is out
 /// of reach of the coefficients.
 static const double gradient_of_noise = 2;
@@ -68,16 +64,13 @@ static double find_share(const struct inversion_state *state,
 
 /// The error that is farthest from what the samples are to make it: as small as was asked for, or a
 /// small part of what is off.
-static struct inverse_doubling find_noisiest(const struct inversion *inversion,
-                                             const struct inversion_state *state) {
-    const double times =
-        mf_inversion_goes_on(inversion) && mf_inversion_state_is_near(state) ? pooled_noise : 1;
+static struct inverse_doubling find_noisiest(const struct inversion_state *state) {
     struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(state);
     for (int k = 0; k < state->assessment.sections; k++) {
         const struct inversion_section *section = &state->assessment.section[k];
         const double noises = sqrt(section->misfit / section->own_misfit);
-        const double wanted = fmax(times * section->precision,
-                                   find_share(state, section) * noises * section->own_noise);
+        const double wanted =
+            fmax(section->precision, find_share(state, section) * noises * section->own_noise);
         if (section->own_noise * noisiest.wanted > noisiest.noise * wanted)
             noisiest = (struct inverse_doubling){
                 .noise = section->own_noise, .wanted = wanted, .unit = ""};
@@ -86,10 +79,9 @@ static struct inverse_doubling find_noisiest(const struct inversion *inversion,
 }
 
 /// Whether more samples help. Replicas that are stuck would never be distinguished from noise.
-static bool needs_samples(const struct inversion *inversion, const struct inversion_state *state,
-                          struct inverse_doubling *doubling) {
+static bool needs_samples(const struct inversion_state *state, struct inverse_doubling *doubling) {
     const int before = doubling->number;
-    *doubling = find_noisiest(inversion, state);
+    *doubling = find_noisiest(state);
     doubling->number = before + 1;
     doubling->max = MAX_DOUBLINGS;
     return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;
@@ -226,7 +218,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
             break;
         if (waits)
             TRY(settle(&sampling));
-        else if (needs_samples(inversion, state, &sampling.progress.doubling))
+        else if (needs_samples(state, &sampling.progress.doubling))
             TRY(take(&sampling, true));
         else
             break;
