@@ -2,6 +2,7 @@
 //
 // The time step of a verification follows from the potential that is verified, not from the target
 // for which it was chosen.
+#include "shared/length.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -108,6 +109,33 @@ static void test_fit_by_simulations_says_that_its_own_step_was_too_long(void **s
     assert_contains(result.err, "the fit simulated its candidates with the longer time step");
 }
 
+/// What a newcomer types first speaks in nm and ps, and no warning stands beside its success.
+static void test_first_fit_of_the_readme_has_a_step_that_is_right(void **state) {
+    static struct run_program_result result;
+    char command[2048], said[2048];
+    snprintf(command, sizeof command,
+             "PATH=/bin:/usr/bin; sed -n 's|.* && ./mesofit fit \\(.*\\)/run.json$|\\1|p' "
+             "'%s/README.md' >named && "
+             "mkdir -p runs/first && cp \"%s/$(cat named)/run.json\" runs/first && "
+             "ln -s '%s/targets' targets",
+             run_program_sources(), run_program_sources(), run_program_sources());
+    (void)state;
+    assert_int_equal(system(command), 0);
+    if (!length_is_long())
+        assert_int_equal(
+            system("PATH=/bin:/usr/bin; sed -i 's/\"precision\": 0.002/\"precision\": 0.006/; "
+                   "s/\"samples\": 100/\"samples\": 50/' runs/first/run.json"),
+            0);
+    RUN_PROGRAM(&result, "fit", "runs/first/run.json", "-o", "out");
+    print_message("%s", result.err);
+    run_program_assert_code(&result, 0);
+    snprintf(said, sizeof said, "%.20s", result.err);
+    assert_contains(said, "nm-ps: ");
+    assert_contains(result.err, "result: success");
+    assert_null(strstr(result.err, "too long for this potential"));
+    assert_null(strstr(result.err, "warning: the"));
+}
+
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -116,6 +144,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_step_that_was_left_to_the_program_is_shortened_until_it_holds),
         TEST_WITHOUT_FIGURES(test_step_that_the_file_gives_is_kept_and_what_would_hold_is_told),
         TEST_WITHOUT_FIGURES(test_fit_by_simulations_says_that_its_own_step_was_too_long),
+        TEST_WITHOUT_FIGURES(test_first_fit_of_the_readme_has_a_step_that_is_right),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -133,6 +133,21 @@ static void test_pages_say_what_shorter_runs_find(void **state) {
     }
 }
 
+/// `units` of a summary has a pressure, too.
+static void test_pressure_is_that_of_the_run_and_not_its_unit(void **state) {
+    char command[2 * 4096];
+    small_inputs_write(*state, "summary.json",
+                       "{\n\t\"units\":\t{\n\t\t\"pressure\":\t446\n\t},\n\t\"pressure\":\t9992,\n"
+                       "\t\"pressure_error\":\t17\n}\n",
+                       NULL, NULL);
+    snprintf(command, sizeof command,
+             "awk -f '%s/tests/tools/results.awk' -v wanted=pressure summary.json >rows", root);
+    assert_int_equal(system(command), 0);
+    char *rows = temporary_folder_read("rows");
+    assert_string_equal(rows, "| `pressure` | 9992(17) |\n");
+    free(rows);
+}
+
 static void test_page_that_asks_for_nothing_is_refused(void **state) {
     char command[3 * 4096];
     (void)state;
@@ -156,6 +171,7 @@ int main(void) {
         TEST(test_one_gas_is_what_its_page_says),
         TEST(test_pages_say_what_shorter_runs_find),
         TEST(test_page_that_asks_for_nothing_is_refused),
+        TEST(test_pressure_is_that_of_the_run_and_not_its_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Rows of a table, "| name | value(error) |", of the numbers `wanted` of a summary.json.
+# Rows of a table, "| name | value(error) |", of the numbers `wanted` of a summary.json; a number of the
+# summary itself before one of the same name within it, as the unit "pressure".
 function digits(value, error,   power) {
     if (!(error > 0))
         return sprintf("%.6g", value)
@@ -14,7 +15,7 @@ match($0, /"[a-z_0-9]+":/) {
     key = substr($0, RSTART + 1, RLENGTH - 3)
     text = substr($0, RSTART + RLENGTH)
     gsub(/[ \t,"]/, "", text)
-    if (!(key in number))
+    if (!(key in number) || /^\t"/)
         number[key] = text
 }
 END {
