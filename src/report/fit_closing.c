@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 struct curve_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
                                                 enum unknown_kind kind, const double *curve,
@@ -66,25 +67,37 @@ static double find_farthest(const struct fit_file *fit, const struct fit_result 
     return farthest;
 }
 
+void mf_fit_closing_verdict(const struct fit_result *result, const char *noise, double farthest,
+                            const char *name, char text[FIT_VERDICT_SIZE]) {
+    static const double within = 1.7; // as inversions end
+    const bool agrees = farthest <= within;
+    const char *word = noise[0]          ? "undetermined"
+                       : agrees          ? "success"
+                       : result->settled ? "converged"
+                                         : "finished";
+    char off[128];
+    snprintf(off, sizeof off,
+             "differ from the targets by up to %.2g times the statistical error (%s)", farthest,
+             name);
+    if (result->status != STATUS_OK)
+        snprintf(text, FIT_VERDICT_SIZE, "the fit did not succeed; the reason follows");
+    else if (isnan(farthest))
+        snprintf(text, FIT_VERDICT_SIZE, "unknown: the verification has no errors");
+    else
+        snprintf(text, FIT_VERDICT_SIZE, "%s: independent simulations %s%s%.*s", word,
+                 agrees ? "agree with the targets within their errors" : off,
+                 noise[0] ? ", but " : "", (int)strcspn(noise, ":"), noise);
+}
+
 /// Whether the fit succeeded.
 static void print_verdict(struct progress *to, const struct fit_file *fit,
-                          const struct fit_result *result) {
-    static const double within = 1.7; // as inversions end
+                          const struct unknowns *unknowns, const struct fit_result *result) {
     const char *name = "";
+    char noise[INVERSE_REASON_SIZE] = "", text[FIT_VERDICT_SIZE];
     const double farthest = find_farthest(fit, result, &name);
-    if (result->status != STATUS_OK)
-        mf_progress_print(to, "result: the fit did not succeed; the reason follows");
-    else if (isnan(farthest))
-        mf_progress_print(to, "result: unknown: the verification has no errors");
-    else if (farthest <= within)
-        mf_progress_print(
-            to,
-            "result: success: independent simulations agree with the targets within their errors");
-    else
-        mf_progress_print(to,
-                          "result: %s: independent simulations differ from the targets by up to "
-                          "%.2g times the statistical error (%s)",
-                          result->settled ? "success" : "finished", farthest, name);
+    mf_fit_closing_is_noise(unknowns, result->curve, result->curve_error, &fit->scene.units, noise);
+    mf_fit_closing_verdict(result, noise, farthest, name, text);
+    mf_progress_print(to, "result: %s", text);
 }
 
 /// "1350 +- 180": rounded to two digits of the error.
@@ -148,7 +161,7 @@ static void print_friction(struct progress *to, const struct fit_file *fit,
 void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result,
                           const char *folder) {
-    print_verdict(to, fit, result);
+    print_verdict(to, fit, unknowns, result);
     print_pressure(to, fit, result);
     print_slowest(to, &result->slowest);
     print_friction(to, fit, unknowns, result);

@@ -23,6 +23,16 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
                              const double *const error[UNKNOWNS], const struct units *units,
                              char reason[INVERSE_REASON_SIZE]);
 
+enum { FIT_VERDICT_SIZE = 256 };
+
+/// Whether the fit succeeded: it has, if independent simulations agree with the targets within
+/// their errors and what was fitted is known. Tested: test_fit_closing.
+/// @param[in] noise     why it is not known, of mf_fit_closing_is_noise, or ""
+/// @param[in] farthest  distance of the target `name`, the farthest off, in its errors; NaN: no
+/// errors
+void mf_fit_closing_verdict(const struct fit_result *result, const char *noise, double farthest,
+                            const char *name, char text[FIT_VERDICT_SIZE]);
+
 /// Say them.
 void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result,

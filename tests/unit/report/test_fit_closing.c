@@ -57,10 +57,38 @@ static void test_closing_says_so_where_most_of_a_friction_weight_is_noise(void *
     mf_unknowns_clear(&unknowns);
 }
 
+/// Success is agreement within the errors, of something that is known.
+static void test_closing_calls_success_only_what_agrees_and_is_known(void **state) {
+    (void)state;
+    static const char noise[] = "omega is mostly noise: only 38 % of it is";
+    char text[FIT_VERDICT_SIZE];
+    struct fit_result result = {.status = STATUS_OK, .settled = true};
+    mf_fit_closing_verdict(&result, "", 1.2, "rdf", text);
+    assert_string_equal(text, "success: independent simulations agree with the targets within "
+                              "their errors");
+    mf_fit_closing_verdict(&result, "", 2.1, "rdf", text);
+    assert_string_equal(text, "converged: independent simulations differ from the targets by up "
+                              "to 2.1 times the statistical error (rdf)");
+    result.settled = false;
+    mf_fit_closing_verdict(&result, "", 2.1, "rdf", text);
+    assert_contains(text, "finished: independent simulations differ");
+    mf_fit_closing_verdict(&result, noise, 1.2, "etd", text);
+    assert_string_equal(text, "undetermined: independent simulations agree with the targets "
+                              "within their errors, but omega is mostly noise");
+    mf_fit_closing_verdict(&result, noise, 2.1, "etd", text);
+    assert_contains(text, "statistical error (etd), but omega is mostly noise");
+    mf_fit_closing_verdict(&result, "", NAN, "", text);
+    assert_contains(text, "unknown: ");
+    result.status = STATUS_UNCONVERGED;
+    mf_fit_closing_verdict(&result, noise, 1.2, "etd", text);
+    assert_contains(text, "did not succeed");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closing_tells_how_well_a_friction_weight_is_known),
         cmocka_unit_test(test_closing_says_so_where_most_of_a_friction_weight_is_noise),
+        cmocka_unit_test(test_closing_calls_success_only_what_agrees_and_is_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
