@@ -291,15 +291,19 @@ static void print_vector(const struct snapshot *snapshot, const struct snapshot_
 
 static void print_snapshot_heading(const struct snapshot *snapshot, FILE *stream) {
     const struct box *box = &snapshot->box;
-    fprintf(stream, "ITEM: TIMESTEP\n%llu\nITEM: NUMBER OF ATOMS time=%.10g\n%zu\n",
-            (unsigned long long)snapshot->step, snapshot->time, snapshot->count);
+    fprintf(stream, "ITEM: TIMESTEP\n%llu\nITEM: NUMBER OF ATOMS time=%.10g",
+            (unsigned long long)snapshot->step, snapshot->time);
+    if (snapshot->units)
+        fprintf(stream, " units=%s", snapshot->units);
+    fprintf(stream, "\n%zu\n", snapshot->count);
     fprintf(stream, "ITEM: BOX BOUNDS pp pp pp\n");
     for (int d = 0; d < box->dimensions; d++)
         fprintf(stream, "0 %.10g\n", box->length[d]);
     if (box->dimensions == 2) // as LAMMPS has two
         fprintf(stream, "-0.5 0.5\n");
-    fprintf(stream, "ITEM: ATOMS id%s type x y z ix iy iz vx vy vz\n",
-            mf_snapshot_find(snapshot, "molecule") ? " mol" : "");
+    fprintf(stream, "ITEM: ATOMS id%s type element%s x y z ix iy iz vx vy vz\n",
+            mf_snapshot_find(snapshot, "molecule") ? " mol" : "",
+            mf_snapshot_has_masses(snapshot) ? " mass" : "");
 }
 
 static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
@@ -312,7 +316,10 @@ static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
         fprintf(stream, "%zu", k + 1);
         if (molecule)
             fprintf(stream, " %.0f", molecule->values[k]);
-        fprintf(stream, " %d", mf_snapshot_type(snapshot, k) + 1);
+        fprintf(stream, " %d %s", mf_snapshot_type(snapshot, k) + 1,
+                mf_snapshot_type_name(snapshot, k));
+        if (mf_snapshot_has_masses(snapshot))
+            fprintf(stream, " %.10g", mf_snapshot_mass(snapshot, k));
         print_vector(snapshot, position, k, stream);
         print_vector(snapshot, image, k, stream);
         print_vector(snapshot, velocity, k, stream);

@@ -426,7 +426,7 @@ static void print_snapshot_heading(const struct snapshot *snapshot, FILE *stream
     for (int n = 0; n < snapshot->columns; n++)
         fprintf(stream, ":%s:%c:%d", name_of(&snapshot->column[n]),
                 snapshot->column[n].whole ? 'I' : 'R', width_of(&snapshot->column[n]));
-    fprintf(stream, ":id:I:1\n");
+    fprintf(stream, "%s:id:I:1\n", mf_snapshot_has_common_mass(snapshot) ? ":mass:R:1" : "");
 }
 
 static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
@@ -440,6 +440,8 @@ static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
                         c < column->components ? column->values[(size_t)c * snapshot->count + k]
                                                : 0);
         }
+        if (mf_snapshot_has_common_mass(snapshot))
+            fprintf(stream, " %.10g", mf_snapshot_mass(snapshot, k));
         fprintf(stream, " %zu\n", k);
     }
 }

@@ -18,6 +18,13 @@ static int count_types(const struct snapshot *snapshot) {
     return snapshot->count > 0 ? mf_snapshot_type(snapshot, snapshot->count - 1) + 1 : 1;
 }
 
+/// A file without masses says that all are 1.
+static bool has_other_masses(const struct snapshot *snapshot) {
+    return mf_snapshot_find(snapshot, "mass") ||
+           (mf_snapshot_has_common_mass(snapshot) &&
+            (snapshot->mass != 1 || snapshot->solvent_mass != 1));
+}
+
 static size_t snapshot_rows(const void *context, enum gsd_chunk chunk, size_t frame) {
     const struct snapshot *const snapshot = context;
     const size_t bonds =
@@ -33,7 +40,7 @@ static size_t snapshot_rows(const void *context, enum gsd_chunk chunk, size_t fr
     case TYPES:
         return (size_t)count_types(snapshot);
     case MASS:
-        return mf_snapshot_find(snapshot, "mass") ? snapshot->count : 0;
+        return has_other_masses(snapshot) ? snapshot->count : 0;
     case TYPE:
     case POSITION:
     case VELOCITY:
@@ -68,7 +75,7 @@ static void put_column(const struct snapshot *snapshot, enum gsd_chunk chunk, FI
 
 static void put_masses(const struct snapshot *snapshot, FILE *stream) {
     for (size_t k = 0; k < snapshot->count; k++)
-        mf_gsd_put_real(mf_snapshot_find(snapshot, "mass")->values[k], stream);
+        mf_gsd_put_real(mf_snapshot_mass(snapshot, k), stream);
 }
 
 static void put_type_names(const struct snapshot *snapshot, FILE *stream) {

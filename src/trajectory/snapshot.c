@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -130,7 +131,9 @@ enum status mf_snapshot_take(struct snapshot *snapshot, const struct particles *
         .composition = composition,
         .topology = particles->topology,
         .step = step,
-        .time = time};
+        .time = time,
+        .mass = 1,
+        .solvent_mass = solvent_particles ? solvent_particles->mass : 1};
     for (int k = 0; k < particles->attributes; k++)
         components += (size_t)particles->attribute[k].components;
     components += particles->topology != NULL;
@@ -162,6 +165,21 @@ const struct snapshot_column *mf_snapshot_find(const struct snapshot *snapshot, 
         if (strcmp(snapshot->column[n].name, name) == 0)
             return &snapshot->column[n];
     return NULL;
+}
+
+double mf_snapshot_mass(const struct snapshot *snapshot, size_t particle) {
+    const struct snapshot_column *const column = mf_snapshot_find(snapshot, "mass");
+    if (column)
+        return column->values[particle];
+    return particle < snapshot->own ? snapshot->mass : snapshot->solvent_mass;
+}
+
+bool mf_snapshot_has_common_mass(const struct snapshot *snapshot) {
+    return !isnan(snapshot->mass) && mf_snapshot_find(snapshot, "mass") == NULL;
+}
+
+bool mf_snapshot_has_masses(const struct snapshot *snapshot) {
+    return mf_snapshot_has_common_mass(snapshot) || mf_snapshot_find(snapshot, "mass");
 }
 
 void mf_snapshot_component_name(const struct snapshot_column *column, int component,
@@ -219,6 +237,9 @@ enum status mf_snapshot_translate(struct snapshot *converted, const struct snaps
         return STATUS_NO_MEMORY;
     }
     converted->units = name_units(units);
+    const double mass = units && units->massless ? NAN : mf_units_factor(units, "mu");
+    converted->mass = from->mass * mass;
+    converted->solvent_mass = from->solvent_mass * mass;
     converted->time = mf_units_file_value(from->time, mf_units_factor(units, "tau"));
     for (int d = 0; d < from->box.dimensions; d++)
         converted->box.length[d] =

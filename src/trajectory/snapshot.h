@@ -41,8 +41,9 @@ struct snapshot {
     const struct composition *composition; ///< borrowed
     const struct topology *topology;       ///< borrowed; NULL: there are no molecules
     uint64_t step;
-    double time;       ///< [τ]
-    const char *units; ///< of all numbers, as trajectory_units.h names them
+    double time;               ///< [τ]
+    const char *units;         ///< of all numbers, as trajectory_units.h names them
+    double mass, solvent_mass; ///< of each where there is no column of masses [μ]; NAN: not known
     /// position [λ] in the box, velocity [λ/τ], force [k_B T_0/λ], image [boxes crossed], then all
     /// attributes by their names, then the number of the molecule, from 1 on, if there are any.
     struct snapshot_column column[SNAPSHOT_MAX_COLUMNS];
@@ -63,6 +64,11 @@ void mf_snapshot_clear(struct snapshot *snapshot);
 
 /// The column that is called so, or NULL.
 const struct snapshot_column *mf_snapshot_find(const struct snapshot *snapshot, const char *name);
+
+/// Mass of a particle: that of its column or, without one, that which all have; NAN: not known.
+double mf_snapshot_mass(const struct snapshot *snapshot, size_t particle);
+bool mf_snapshot_has_common_mass(const struct snapshot *snapshot); ///< known, and without a column
+bool mf_snapshot_has_masses(const struct snapshot *snapshot);      ///< either
 
 /// The reduced unit of a column: "lambda" of positions; "" of what the scene does not scale.
 const char *mf_snapshot_unit(const struct snapshot_column *column);

@@ -131,14 +131,14 @@ struct bead {
     double position[3], force[3];
 };
 
-/// One frame after the others: "A x y z image velocity force id".
+/// One frame after the others: "A x y z image velocity force mass id".
 static bool read_frame(FILE *stream, struct bead *beads) {
     char line[512];
     if (fgets(line, sizeof line, stream) == NULL)
         return false;
     assert_int_equal(atoi(line), BEADS);
     assert_non_null(fgets(line, sizeof line, stream));
-    assert_non_null(strstr(line, "pos:R:3:image:I:3:velo:R:3:forces:R:3:id"));
+    assert_non_null(strstr(line, "pos:R:3:image:I:3:velo:R:3:forces:R:3:mass:R:1:id"));
     for (int k = 0; k < BEADS; k++) {
         struct bead *b = &beads[k];
         assert_non_null(fgets(line, sizeof line, stream));

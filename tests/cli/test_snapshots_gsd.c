@@ -95,9 +95,42 @@ static void test_gsd_is_the_dump_with_bonds(void **state) {
     mf_trajectory_close(&dump);
 }
 
+static void check_masses(const struct run_program_result *result) {
+    run_program_assert_code(result, 0);
+    assert_contains(result->err, "W: 60 beads of 1 atom, the first of 18 u");
+    assert_contains(result->err, ": 40 beads of 2 atoms, the first of 36 u");
+}
+
+/// Beads of 18 u: a dump says what they are, their mass and its units, and a GSD their mass.
+static void test_what_all_beads_weigh_is_in_the_snapshots(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(
+        *state, "scene.json",
+        "{\"units\": \"nm-ps\", \"box\": [3, 3, 3], \"temperature\": 300, \"time_step\": 0.01,\n"
+        "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 2000, \"length\": 0.4}},\n"
+        "\"molecules\": {\"pair\": {\"count\": 40, \"beads\": [\"A\", \"B\"],\n"
+        "    \"bonds\": {\"spring\": [[1, 2]]}}},\n"
+        "\"particles\": {\"types\": {\"W\": 60}, \"mass\": 18},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 50, \"cutoff\": 0.5},\n"
+        "\"snapshots\": {\"every\": 20, \"formats\": [\"lammps-dump\", \"extxyz\", \"gsd\"]},\n"
+        "\"measure\": {\"equilibration\": 100, \"samples\": 10, \"every\": 20}}\n",
+        NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "measure", "out/snapshots/trajectory.lammpstrj", "-o", "of-dump");
+    check_masses(&result);
+    RUN_PROGRAM(&result, "measure", "out/snapshots/trajectory.extxyz", "-o", "of-xyz");
+    check_masses(&result);
+    RUN_PROGRAM(&result, "measure", "out/snapshots/step_000000100.gsd", "--file-units", "nm-ps",
+                "-o", "of-gsd");
+    check_masses(&result);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_gsd_is_the_dump_with_bonds,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_what_all_beads_weigh_is_in_the_snapshots,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

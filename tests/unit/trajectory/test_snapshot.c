@@ -53,10 +53,11 @@ static void test_extxyz_has_a_line_for_each_particle_by_id(void **state) {
     assert_string_equal(
         text, "3\n"
               "Lattice=\"4 0 0 0 8 0 0 0 1\" pbc=\"T T F\" Step=20 Time=0.5 "
-              "Properties=species:S:1:pos:R:3:image:I:3:velo:R:3:forces:R:3:radius:R:1:id:I:1\n"
-              "A 3.1 3.1 0 0 0 0 102 112 0 -0.2 -0.1666666667 0 1 0\n"
-              "A 1.1 1.1 0 0 0 0 100 110 0 -0.3333333333 -0.25 0 0 1\n"
-              "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 2\n");
+              "Properties=species:S:1:pos:R:3:image:I:3:velo:R:3:forces:R:3:radius:R:1:mass:R:1:"
+              "id:I:1\n"
+              "A 3.1 3.1 0 0 0 0 102 112 0 -0.2 -0.1666666667 0 1 1 0\n"
+              "A 1.1 1.1 0 0 0 0 100 110 0 -0.3333333333 -0.25 0 0 1 1\n"
+              "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 1 2\n");
     free(text);
 }
 
@@ -91,9 +92,9 @@ static void test_companions_follow_as_a_type_of_their_own(void **state) {
     mf_particles_clear(&particles);
     char *frames = temporary_folder_read(temporary_folder_file(folder, "trajectory.extxyz"));
     assert_contains(frames, "5\nLattice");
-    assert_contains(frames, "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 2\n"
-                            "solvent 0.5 1 0 0 0 0 -1 7 0 0 0 0 0 3\n"
-                            "solvent 0.5 2 0 0 0 0 3 8 0 0 0 0 0 4\n");
+    assert_contains(frames, "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 1 2\n"
+                            "solvent 0.5 1 0 0 0 0 -1 7 0 0 0 0 0 1 3\n"
+                            "solvent 0.5 2 0 0 0 0 3 8 0 0 0 0 0 1 4\n");
     char *text = temporary_folder_read(temporary_folder_file(folder, "step_000000020.json"));
     assert_contains(text, "\"count\": 3,");
     assert_contains(text, "\"image_x\": [0, 0, 10]");
