@@ -5,8 +5,10 @@
 #include "topologies/structure_topology.h"
 #include "base/memory.h"
 #include "io/json.h"
+#include "scene/scene_attributes.h"
 #include "trajectory/votca_map.h"
 
+#include <math.h>
 #include <string.h>
 
 /// "particles": {"types": {"W": 400}}: single beads, whose types come first.
@@ -75,4 +77,52 @@ enum status mf_molecules_file_read(struct scene_molecules *molecules, struct com
     if (status != STATUS_OK)
         mf_scene_molecules_clear(molecules);
     return status;
+}
+
+/// Masses in a file [u]: what 1 is, and what beads have of which nothing is said; NAN: not known.
+struct masses {
+    double unit, usual;
+};
+
+static struct masses find_masses(struct json_object *root, bool reduced_trajectory) {
+    double mass = NAN;
+    if (mf_json_is_object(root, "units")) {
+        struct json_object object = mf_json_child(root, "units", false);
+        mf_json_numbers(&object, "mass", &mass, 1);
+        if (mf_json_has(&object, "system"))
+            return (struct masses){1, mass == 1 ? NAN : mass}; // 1 u stands for none
+        mass /= UNITS_ATOMIC_MASS;
+    } else if (mf_json_has(root, "units"))
+        return (struct masses){1, NAN}; // "nm-ps"
+    if (reduced_trajectory)
+        mass = 1;
+    return (struct masses){mass, mass};
+}
+
+static void read_masses(struct json_object *root, const struct composition *types,
+                        struct masses known, double mass[COMPOSITION_MAX_TYPES]) {
+    struct scene scene = {.setup.composition = *types};
+    struct json_object particles = mf_json_child(root, "particles", false);
+    if (!isnan(known.unit))
+        mf_scene_attributes_read(&scene, &particles);
+    const struct attributes_source *const source = &scene.setup.attribute[ATTRIBUTES_MASS];
+    for (int type = 0; type < types->types; type++) {
+        const struct attributes_range *range = &source->range[source->ranges == 1 ? 0 : type];
+        const bool same = range->minimum == range->maximum;
+        mass[type] = source->ranges == 0 ? known.usual : same ? known.unit * range->minimum : NAN;
+    }
+}
+
+enum status mf_molecules_file_masses(double mass[COMPOSITION_MAX_TYPES],
+                                     const struct composition *types, const char *file,
+                                     const char *units) {
+    struct json_document *document;
+    for (int type = 0; type < COMPOSITION_MAX_TYPES; type++)
+        mass[type] = NAN;
+    if (mf_molecules_file_lists(file) || mf_votca_map_is(file))
+        return STATUS_OK;
+    TRY(mf_json_open(&document, file));
+    struct json_object root = mf_json_root(document);
+    read_masses(&root, types, find_masses(&root, units && strcmp(units, "lj") == 0), mass);
+    return mf_json_close(document, STATUS_OK);
 }

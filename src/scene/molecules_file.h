@@ -13,5 +13,14 @@
 enum status mf_molecules_file_read(struct scene_molecules *molecules, struct composition *types,
                                    const char *file) MUST_USE;
 
+/// What "particles" of a JSON file say of the masses of these types [u]; NAN: nothing, or that they
+/// differ among beads of a type. Those of a reduced file are in the unit that its "units" give, or
+/// stand for themselves beside a trajectory in `units` "lj", and are not known beside another.
+/// @param[in] units  of the trajectory, as the user gave them, or NULL
+/// Fails: as mf_molecules_file_read.
+enum status mf_molecules_file_masses(double mass[COMPOSITION_MAX_TYPES],
+                                     const struct composition *types, const char *file,
+                                     const char *units) MUST_USE;
+
 /// Whether a file lists atoms, as all of these but JSON and maps do: by its name.
 bool mf_molecules_file_lists(const char *file);

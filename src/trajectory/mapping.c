@@ -303,7 +303,7 @@ static size_t type_of(const struct structure_atom *atom, const char *const *type
 }
 
 static enum status take_atoms(struct mapping *mapping, const struct structure *structure,
-                              const char *const *types, const char *file) {
+                              const char *const *types, const double *mass, const char *file) {
     OWNED bool *told = NULL;
     TRY_ARRAY(told, mapping->types + 1);
     for (size_t k = 0; k < structure->atoms; k++) {
@@ -329,7 +329,7 @@ static enum status take_atoms(struct mapping *mapping, const struct structure *s
                                   .count = 1,
                                   .type = type,
                                   .molecule = structure->residues ? atom->residue : k,
-                                  .mass = atom->mass};
+                                  .mass = isnan(atom->mass) ? mass[type] : atom->mass};
     }
     return STATUS_OK;
 }
@@ -349,7 +349,8 @@ static enum status check_types(const struct mapping *mapping, const char *file) 
 }
 
 enum status mf_mapping_init_atoms(struct mapping *mapping, const struct structure *structure,
-                                  const char *const *types, size_t count, const char *file) {
+                                  const char *const *types, const double *mass, size_t count,
+                                  const char *file) {
     enum status status = STATUS_OK;
     *mapping = (struct mapping){.atoms = structure->atoms, .types = count};
     NEW_ARRAY(mapping->type_name, count);
@@ -358,7 +359,7 @@ enum status mf_mapping_init_atoms(struct mapping *mapping, const struct structur
     NEW_ARRAY(mapping->weight, structure->atoms);
     for (size_t type = 0; type < count; type++)
         snprintf(mapping->type_name[type], STRUCTURE_NAME, "%.*s", STRUCTURE_NAME - 1, types[type]);
-    CHECK(take_atoms(mapping, structure, types, file));
+    CHECK(take_atoms(mapping, structure, types, mass, file));
     qsort(mapping->bead, mapping->beads, sizeof *mapping->bead, by_type);
     CHECK(check_types(mapping, file));
     mapping->broken = structure->residues > 0 && structure->residues < structure->atoms;

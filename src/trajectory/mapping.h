@@ -35,11 +35,13 @@ enum status mf_mapping_init(struct mapping *mapping, const struct mapping_plan *
                             const struct structure *structure) MUST_USE;
 
 /// Make every atom a bead of the type that is called as the atom or, in a file that knows but the
-/// numbers of types, has that number, from 1 on. @param[in] file  that names the types, for
-/// messages. Fails: BAD_INPUT for an atom of another type, and for a type without atoms; NO_MEMORY.
+/// numbers of types, has that number, from 1 on.
+/// @param[in] mass  of each type [u], for atoms whose file says none; NAN: not known
+/// @param[in] file  that names the types, for messages
+/// Fails: BAD_INPUT for an atom of another type, and for a type without atoms; NO_MEMORY.
 /// Tested: cli/test_measure_molecules.
 enum status mf_mapping_init_atoms(struct mapping *mapping, const struct structure *structure,
-                                  const char *const *types, size_t count,
+                                  const char *const *types, const double *mass, size_t count,
                                   const char *file) MUST_USE;
 
 void mf_mapping_clear(struct mapping *mapping);

@@ -71,11 +71,15 @@ static const struct structure *atoms_of(const struct run *run) {
 
 /// Beads are atoms whose types the molecules' file names.
 static enum status take_atoms(struct run *run) {
+    const struct measure_request *const request = run->request;
     const char *types[COMPOSITION_MAX_TYPES];
+    double mass[COMPOSITION_MAX_TYPES];
+    TRY(mf_molecules_file_masses(mass, &run->types, request->molecules,
+                                 request->frames.options.units));
     for (int type = 0; type < run->types.types; type++)
         types[type] = run->types.name[type];
-    return mf_mapping_init_atoms(&run->mapping, atoms_of(run), types, (size_t)run->types.types,
-                                 run->request->molecules);
+    return mf_mapping_init_atoms(&run->mapping, atoms_of(run), types, mass,
+                                 (size_t)run->types.types, request->molecules);
 }
 
 /// Beads are what a map makes of atoms, or one a residue.

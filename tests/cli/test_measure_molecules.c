@@ -370,6 +370,48 @@ static void test_molecules_that_are_not_there_are_refused(void **state) {
     }
 }
 
+/// Four molecules A-B of a dump without masses, in a box of 2 nm.
+static void write_dump_without_masses(struct temporary_folder *folder) {
+    char text[4096];
+    int length = 0;
+    for (int frame = 0; frame < 3; frame++) {
+        length +=
+            snprintf(text + length, sizeof text - (size_t)length,
+                     "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n8\nITEM: BOX BOUNDS pp pp pp\n"
+                     "0 20\n0 20\n0 20\nITEM: ATOMS id mol type x y z\n",
+                     frame);
+        for (int k = 0; k < 8; k++)
+            length += snprintf(text + length, sizeof text - (size_t)length, "%d %d %d %d %d %.1f\n",
+                               k + 1, k / 2 + 1, k % 2 + 1, 3 * k % 20, 5 * (k / 2),
+                               2.0 * (k % 2) + 0.1 * frame);
+    }
+    small_inputs_write(folder, "foreign.lammpstrj", text, NULL, NULL);
+}
+
+/// Masses that the trajectory does not have are those of the scene.
+static void test_masses_are_those_of_the_scene(void **state) {
+    static const char dumbbells[] =
+        "{UNITS \"bonds\": {\"b\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.3}},\n"
+        "\"molecules\": {\"pair\": {\"beads\": [\"A\", \"B\"], \"bonds\": {\"b\": [[1, 2]]}}},\n"
+        "\"particles\": {\"mass\": {\"A\": 20, \"B\": 30}}}\n";
+    static const struct {
+        const char *units, *file, *says;
+    } cases[] = {{"\"units\": \"nm-ps\",", "real", "B: 4 beads of 1 atom, the first of 30 u"},
+                 {"\"units\": {\"length\": 1, \"temperature\": 300, \"mass\": 3.32107813e-27},",
+                  "real", "B: 4 beads of 1 atom, the first of 60 u"},
+                 {"", "lj", "B: 4 beads of 1 atom, the first of 30 u"},
+                 {"", "real", "B: 4 beads of 1 atom, of unknown mass"}};
+    static struct run_program_result result;
+    write_dump_without_masses(*state);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "scene.json", dumbbells, "UNITS", cases[k].units);
+        RUN_PROGRAM(&result, "measure", "foreign.lammpstrj", "--molecules", "scene.json",
+                    "--file-units", cases[k].file, "--static", "-o", "of-scene", "--force");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.err, cases[k].says);
+    }
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -380,6 +422,7 @@ int main(void) {
         TEST(test_lengths_have_bins_for_the_narrowest_bond),
         TEST(test_beads_in_another_order_than_their_atoms_are_told),
         TEST(test_molecules_that_are_not_there_are_refused),
+        TEST(test_masses_are_those_of_the_scene),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -296,10 +296,12 @@ static void test_gsd_has_no_other_types_than_those_of_its_names(void **state) {
     end_file("hoomd");
     assert_ok(try(state, "lj"));
     assert_fails(mf_mapping_init_atoms(&mapping, &trajectory.structure,
-                                       (const char *const[]){"Pol"}, 1, "a.gsd"),
+                                       (const char *const[]){"Pol"}, (const double[]){NAN}, 1,
+                                       "a.gsd"),
                  STATUS_BAD_INPUT, "no type has the name of atom 1, \"Water\"");
     assert_ok(mf_mapping_init_atoms(&mapping, &trajectory.structure,
-                                    (const char *const[]){"Pol", "Water"}, 2, "a.gsd"));
+                                    (const char *const[]){"Pol", "Water"},
+                                    (const double[]){NAN, NAN}, 2, "a.gsd"));
     mf_mapping_clear(&mapping);
     close_all();
 }
