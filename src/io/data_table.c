@@ -336,15 +336,39 @@ void mf_data_table_clear(struct data_table *table) {
     *table = (struct data_table){0};
 }
 
+static double cell(const struct data_table *table, size_t row, size_t column) {
+    return table->values[row * table->columns + column];
+}
+
+bool mf_data_table_numbers_rows(const struct data_table *table, size_t column) {
+    enum { FEWEST = 3 };
+    const double first = cell(table, 0, column);
+    bool numbers = table->rows >= FEWEST && first >= 0 && first == floor(first);
+    for (size_t k = 0; k < table->rows && numbers; k++)
+        numbers = cell(table, k, column) == first + (double)k;
+    return numbers;
+}
+
+bool mf_data_table_is_spaced(const struct data_table *table, size_t column) {
+    static const double rounding = 0.2;
+    const double step = table->rows > 1 ? cell(table, 1, column) - cell(table, 0, column) : 0;
+    bool spaced = step > 0;
+    for (size_t k = 1; k < table->rows && spaced; k++)
+        spaced = fabs(cell(table, k, column) - cell(table, k - 1, column) - step) < rounding * step;
+    return spaced;
+}
+
+static bool increases(const struct data_table *table, size_t column) {
+    size_t k = 1;
+    while (k < table->rows && cell(table, k, column) > cell(table, k - 1, column))
+        k++;
+    return k >= table->rows;
+}
+
 bool mf_data_table_is_numbered(const struct data_table *table) {
-    enum { FEWEST_ROWS = 3, FEWEST_COLUMNS = 3 };
-    bool numbered = table->rows >= FEWEST_ROWS && table->columns >= FEWEST_COLUMNS;
-    for (size_t k = 0; k < table->rows && numbered; k++) {
-        const double *const row = table->values + k * table->columns;
-        numbered =
-            row[0] == (double)(k + 1) && (k == 0 || row[1] > row[1 - (ptrdiff_t)table->columns]);
-    }
-    return numbered;
+    enum { FEWEST_COLUMNS = 3 };
+    return table->columns >= FEWEST_COLUMNS && mf_data_table_numbers_rows(table, 0) &&
+           (cell(table, 0, 0) == 1 ? increases(table, 1) : mf_data_table_is_spaced(table, 1));
 }
 
 size_t mf_data_table_find(const struct data_table *table, const char *name) {

@@ -51,8 +51,14 @@ void mf_data_table_clear(struct data_table *table);
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                            size_t column, double min) MUST_USE;
 
-/// Whether the first of at least three columns numbers the rows, 1, 2, 3, …, and the second
-/// increases, as r does: what a table of another program is if nobody has said so.
+/// Whether a column numbers at least three rows: 1, 2, 3, … from any number on.
+bool mf_data_table_numbers_rows(const struct data_table *table, size_t column);
+
+/// Whether a column grows in equal steps but for its digits, as r and times do.
+bool mf_data_table_is_spaced(const struct data_table *table, size_t column);
+
+/// Whether the first of at least three columns numbers the rows and the second is an argument as r:
+/// what a table of another program is if nobody has said so. Behind 1, 2, 3, … it only increases.
 bool mf_data_table_is_numbered(const struct data_table *table);
 
 /// Number, from 1, of the column that the line of names calls `name`, units in brackets aside; 0 if

@@ -52,6 +52,12 @@ static void fault_shape(const struct scene *scene, struct json_object *particles
     const struct placement *placement = &scene->setup.placement;
     const size_t dimensions = (size_t)scene->setup.box.dimensions;
     char name[32], called[64] = "";
+    if (mf_data_table_numbers_rows(table, 0) && motion % dimensions == 1) {
+        mf_json_fault(particles, "file",
+                      "%s: column 1 numbers the rows: leave it out, so that x is first",
+                      placement->file);
+        return;
+    }
     if (motion > dimensions && motion != 2 * dimensions &&
         mf_scene_attributes_column_name(table, motion - 1, name, sizeof name))
         snprintf(called, sizeof called, ", of which \"%s\" is unknown", name);

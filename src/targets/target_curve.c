@@ -113,6 +113,13 @@ static enum status load(struct target_curve *curve, const struct observable_targ
                                      .error = p->error_column,
                                      .may_be_unknown = !of_time};
     TRY(mf_target_rows_read(rows, &columns, units));
+    if (columns.numbered && rows->x[0] > 0) // an MSD may grow as evenly from 0
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: column %lld numbers the rows, and column %lld grows as %s "
+                              "does: set \"%s\" to %lld and \"value_column\" to that of the values",
+                              p->file, (long long)columns.x, (long long)columns.y,
+                              of_time ? "a time" : "x", of_time ? "time_column" : "x_column",
+                              (long long)columns.y);
     if (of_time && rows->count < 3)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: only %zu times", p->file, rows->count);
     if (of_time)

@@ -79,19 +79,6 @@ static enum status check_errors(const struct target_rdf_parameters *p,
     return STATUS_OK;
 }
 
-/// Whether x is 1, 2, 3, …, in whatever unit, and y grows in equal steps but for its digits, as r
-/// does and no g(r).
-static bool are_row_numbers(const struct target_rows *rows) {
-    static const double rounding = 0.2;
-    bool numbers = rows->count > 2 && rows->y[1] > rows->y[0];
-    for (size_t k = 1; k < rows->count && numbers; k++) {
-        const double step = rows->y[1] - rows->y[0], own = rows->y[k] - rows->y[k - 1];
-        numbers = fabs(rows->x[k] / rows->x[0] - (double)(k + 1)) < 1e-9 * (double)(k + 1) &&
-                  fabs(own - step) < rounding * step;
-    }
-    return numbers;
-}
-
 static enum status read_columns(const struct target_rdf_parameters *p, const struct units *units,
                                 struct target_rows *rows) {
     struct target_columns columns = {.file = p->file,
@@ -101,7 +88,7 @@ static enum status read_columns(const struct target_rdf_parameters *p, const str
                                      .error = p->error_column,
                                      .usual_error = "g_error"};
     TRY(mf_target_rows_read(rows, &columns, units));
-    if (are_row_numbers(rows))
+    if (columns.numbered)
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "%s: column %lld numbers the rows, and column %lld increases as r does: "

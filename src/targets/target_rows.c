@@ -78,6 +78,8 @@ static enum status find_columns(struct target_columns *columns, const struct dat
                              : USUAL_ERROR;
     if (columns->error > 0 && !is_known(table, columns->error))
         columns->error = 0;
+    columns->numbered = mf_data_table_numbers_rows(table, (size_t)columns->x - 1) &&
+                        mf_data_table_is_spaced(table, (size_t)columns->y - 1);
     columns->is_usual_error =
         columns->error > 0 && columns->usual_error &&
         columns->error == (int64_t)mf_data_table_find(table, columns->usual_error);

@@ -32,6 +32,7 @@ struct target_columns {
     bool may_be_unknown;     ///< y may be nan
     const char *usual_error; ///< what programs call a column of errors
     bool is_usual_error;     ///< found: it is called so
+    bool numbered;           ///< found: x numbers the rows, and y grows as an argument does
 };
 
 /// Read rows whose x grows. The numbers of errors are as they are, be they nan. `columns` are those

@@ -34,7 +34,7 @@ static double energy(double r) {
     return 12 * (1 - r) * (1 - r);
 }
 
-enum form { PLAIN, LAMMPS, GROMACS_C12, GROMACS_C6, GROMACS_CHARGES, NUMBERED, SECTIONS };
+enum form { PLAIN, LAMMPS, GROMACS_C12, GROMACS_C6, GROMACS_CHARGES, NUMBERED, INDEXED, SECTIONS };
 
 static int write_row(char *text, size_t size, enum form form, int k) {
     const double r = r_of(k), force = 24 * (1 - r);
@@ -48,7 +48,8 @@ static int write_row(char *text, size_t size, enum form form, int k) {
     case GROMACS_CHARGES:
         return snprintf(text, size, "%.10g %.10g 1 0 0 %.10g %.10g\n", r, 1 / r, energy(r), force);
     default:
-        return snprintf(text, size, "%d %.10g %.10g %.10g\n", k + 1, r, energy(r), force);
+        return snprintf(text, size, "%d %.10g %.10g %.10g\n", k + (form != INDEXED), r, energy(r),
+                        force);
     }
 }
 
@@ -130,6 +131,7 @@ static void test_tables_of_lammps_have_the_units_that_they_say(void **state) {
 static void test_tables_of_others_are_refused_when_they_say_too_little(void **state) {
     refuse(*state, scene, NUMBERED, "column 1 numbers the rows: leave it out, so that r is first");
     refuse(*state, dimers, NUMBERED, "column 1 numbers the rows: leave it out, so that r is first");
+    refuse(*state, scene, INDEXED, "column 1 numbers the rows: leave it out, so that r is first");
     refuse(*state, scene, GROMACS_CHARGES,
            "write r and the potential, C6 g + C12 h, in two columns");
     refuse(*state, scene, SECTIONS, "law.tsv:48: a second section of LAMMPS begins");
@@ -138,11 +140,35 @@ static void test_tables_of_others_are_refused_when_they_say_too_little(void **st
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
+/// A curve of time and places, as a spreadsheet or pandas writes them.
+static void test_numbered_rows_of_times_and_places_are_told(void **state) {
+    static const char run[] =
+        "{\"target\": {\"vacf\": {\"file\": \"law.tsv\"}}, \"unknowns\": {\"omega\": {\"maximum\": "
+        "5}},\n"
+        "\"scene\": {\"box\": [5, 5, 5], \"particles\": {\"count\": 300}, \"temperature\": 1},\n"
+        "\"method\": {\"name\": \"gauss-newton\"}}\n";
+    static const char placed[] =
+        "{\"box\": [5, 5, 5], \"time_step\": 0.01,\n"
+        "\"particles\": {\"count\": 3, \"placement\": \"file\", \"file\": \"places.tsv\"}}\n";
+    small_inputs_write(*state, "law.tsv",
+                       "1 0 1 0.01\n2 0.05 0.9 0.01\n3 0.1 0.7 0.01\n4 0.15 0.6 0.01\n", NULL,
+                       NULL);
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "bad");
+    assert_contains(result.err, "law.tsv: column 1 numbers the rows, and column 2 grows as a time "
+                                "does: set \"time_column\" to 2");
+    small_inputs_write(*state, "places.tsv", "0 1 2 3\n1 2 3 1\n2 3 4 2\n", NULL, NULL);
+    small_inputs_write(*state, "scene.json", placed, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "bad");
+    assert_contains(result.err, "places.tsv: column 1 numbers the rows: leave it out");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_tables_of_others_are_the_law_of_their_r_and_energy),
         TEST(test_tables_of_lammps_have_the_units_that_they_say),
         TEST(test_tables_of_others_are_refused_when_they_say_too_little),
+        TEST(test_numbered_rows_of_times_and_places_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

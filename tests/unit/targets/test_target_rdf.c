@@ -85,6 +85,8 @@ static void test_target_read_takes_g_of_fix_ave_time(void **state) {
     mf_target_rdf_clear(&target);
     assert_refused(state, "1 0.05 0 0\n2 0.15 0.5 1\n3 0.25 1.5 4\n4 0.35 1 9\n", "",
                    "g.tsv: column 1 numbers the rows, and column 2 increases as r does");
+    assert_refused(state, ",r,g\n0,0.05,0\n1,0.15,0.5\n2,0.25,1.5\n3,0.35,1\n", "",
+                   "g.tsv: column 1 numbers the rows, and column 2 increases as r does");
 }
 
 static void test_target_read_forgives_the_rounding_of_the_file(void **state) {
