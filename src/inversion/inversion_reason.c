@@ -19,8 +19,8 @@ static void report_unsettled(const struct inversion_unequilibrated *unequilibrat
     char what[INVERSE_REASON_SIZE / 2];
     mf_stationary_describe(unequilibrated->quantity, &unequilibrated->is, what, sizeof what);
     snprintf(reason, INVERSE_REASON_SIZE,
-             "the samples are not in equilibrium after %llu sweeps of each replica: %.100s. The "
-             "liquid freezes, cavitates or condenses, or needs a longer \"equilibration\"; long "
+             "the samples are not in equilibrium after %llu sweeps of each replica: %.100s. It "
+             "may need a longer \"equilibration\", or freeze, cavitate or condense; long "
              "molecules may equilibrate faster with the \"sampler\" \"monte-carlo\"",
              (unsigned long long)unequilibrated->sweeps, what);
 }

@@ -122,6 +122,7 @@ static const double hot = 0.05;
 /// the time step, tension, the number of particles.
 static void find_cause(const struct verification *verification, double temperature,
                        const struct units *units, char cause[FIT_STEP_TEXT_SIZE]) {
+    static const double tension = 3; // standard errors
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const bool holds = verification->step.result == VERIFY_STEP_HOLDS;
     const char *known = NULL;
@@ -134,15 +135,15 @@ static void find_cause(const struct verification *verification, double temperatu
     else if (found->temperature / temperature > 1 + hot)
         known = "the temperature is off, and there are too few \"samples\" to tell whether the "
                 "time step is the cause";
-    else if (found->pressure < 0)
-        known = "the liquid is under tension and cavitates: g(r) does not determine the pressure, "
-                "so give it as a second target";
+    else if (found->pressure < 0 && !(-found->pressure < tension * found->pressure_error))
+        known = "the liquid is under tension, in which it may cavitate: g(r) does not determine "
+                "the pressure, so give it as a second target";
     if (known == NULL && verification->unequilibrated[0])
         snprintf(
             cause, FIT_STEP_TEXT_SIZE,
-            "it is not in equilibrium, %.150s: the liquid freezes, cavitates or condenses with "
-            "this potential, so that another temperature, density or target is needed, or it "
-            "needs a longer \"verification.equilibration\"",
+            "it is not in equilibrium, %.150s: it may need a longer "
+            "\"verification.equilibration\", or freeze, cavitate or condense with this potential, "
+            "so that another temperature, density or target is needed",
             verification->unequilibrated);
     else if (known)
         snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
