@@ -22,6 +22,11 @@ if (stiffness > 0) {
 rows = int(system("grep -cv '^#'" . from(table)))
 box = system("awk '/\"box\":/ { gsub(/[^0-9.eE, -]/, \"\"); gsub(/,/, \" \"); print; exit }' used.json")
 edge(n) = real(word(box, n))
+# Of a reduced file with units: λ in nm, in which the axes are.
+nm = real(system("awk '/\"units\":[ \t]*{/ { inside = 1 } inside && /\"system\":/ { named = 1 } \
+    inside && /\"length\":/ { gsub(/[^0-9.eE+-]/, \"\", $2); nm = $2; inside = 0 } \
+    END { print named ? 0 : nm + 0 }' used.json"))
+axis(of) = nm > 0 ? "{/:Italic " . of . "} / nm" : axis_of(table, of, "{/:Italic " . of . "}", "{/:Italic " . of . "} / {/:Italic λ}")
 
 # Radius and centre of an obstacle; 0 without one.
 obstacle(n) = real(system(sprintf("awk '/\"obstacle_centre\":/ { sub(/.*\\[/, \"\"); split($0, centre, \",\") } \
@@ -123,9 +128,16 @@ do for [kind in kinds] {
     # The box itself, as a frame.
     set object 1 rectangle from 0, 0 to edge(1), edge(2) front fillstyle empty border rgb ink linewidth 0.8
     if (obstacle(0) > 0) { set object 2 circle at obstacle(1), obstacle(2) size obstacle(0) behind fillstyle solid 1 border rgb ink fillcolor rgb 0xd9d9d9 }
-    set xlabel axis_of(table, "x", "{/:Italic x}", "{/:Italic x} / {/:Italic λ}") . (dimensions < 3 ? "" : slab < depth ? \
-        sprintf("  (a slab of %.2g; pale: its back)", slab) : "  (pale: far along {/:Italic z})")
-    set ylabel axis_of(table, "y", "{/:Italic y}", "{/:Italic y} / {/:Italic λ}")
+    set xlabel axis("x") . (dimensions < 3 ? "" : slab < depth ? \
+        sprintf("  (a slab of %.2g; pale: its back)", nm > 0 ? nm * slab : slab) : "  (pale: far along {/:Italic z})")
+    set ylabel axis("y")
+    if (nm > 0) {
+        step = step_of(low(edge(1), edge(2)) * nm / 3)
+        set xtics ("0" 0)
+        set ytics ("0" 0)
+        do for [k = 1:int(edge(1) * nm / step)] { set xtics add (sprintf("%g", k * step) k * step / nm) }
+        do for [k = 1:int(edge(2) * nm / step)] { set ytics add (sprintf("%g", k * step) k * step / nm) }
+    }
     set palette model HSV functions gray, 0.75, 0.85
     set cbrange [0:1]
     set cbtics ("0" 0, "{/:Italic π}" 0.5, "2{/:Italic π}" 1)

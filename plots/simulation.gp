@@ -9,6 +9,10 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 ps = factor_of("thermodynamics.tsv", "time[ps]", 2)
 kJ = factor_of("thermodynamics.tsv", "potential_energy[kJ/mol]", 4)
 bar = factor_of("thermodynamics.tsv", "pressure[bar]", 5)
+# Columns without another in physical units are in them, too: k_B T_0 in kJ/mol tells T_0 in K.
+K = kJ == 1 ? 1 : kJ / 8.31446261815324e-3
+axis_T = kJ == 1 ? axis_of("thermodynamics.tsv", "temperature", "{/:Italic T}", "{/:Italic T} / {/:Italic T}_0") : "{/:Italic T} / K"
+axis_E = kJ == 1 ? axis_of("thermodynamics.tsv", "total_energy", "{/:Italic E}", "{/:Italic E} / {/:Italic k}_B{/:Italic T}_0") : "{/:Italic E} / (kJ/mol)"
 rdfs = system("ls | grep -E '^rdf(_[A-Za-z0-9_]+-[A-Za-z0-9_]+)?[.]tsv$'")
 with_rdf = words(rdfs) > 0
 nm = with_rdf ? factor_of(word(rdfs, 1), "r[nm]", 1) : 1
@@ -24,8 +28,8 @@ do for [file in rdfs] {
 # The pair type that a table is of: nothing, or A-B.
 pair_of(file) = strlen(file) > 7 ? file[5:strlen(file) - 4] : ""
 stats "thermodynamics.tsv" using (ps * $2) name "T" nooutput
-stats "thermodynamics.tsv" using (valid(6) ? (valid(3) ? low($3, $6) : $6) : valid(3) ? $3 : 0) name "L" nooutput
-stats "thermodynamics.tsv" using (valid(6) ? (valid(3) ? high($3, $6) : $6) : valid(3) ? $3 : 0) name "H" nooutput
+stats "thermodynamics.tsv" using (K * (valid(6) ? (valid(3) ? low($3, $6) : $6) : valid(3) ? $3 : 0)) name "L" nooutput
+stats "thermodynamics.tsv" using (K * (valid(6) ? (valid(3) ? high($3, $6) : $6) : valid(3) ? $3 : 0)) name "H" nooutput
 stats "thermodynamics.tsv" using (kJ * $4) name "U" nooutput
 stats "thermodynamics.tsv" using (bar * $5) name "P" nooutput
 has_numbers(column) = int(system(sprintf( \
@@ -35,7 +39,7 @@ configurational = has_numbers(6)
 
 total = column_of("thermodynamics.tsv", "total_energy")
 panels = total > 0 ? 4 : 3
-if (total > 0) { stats "thermodynamics.tsv" using total name "V" nooutput }
+if (total > 0) { stats "thermodynamics.tsv" using (kJ * column(total)) name "V" nooutput }
 
 # Numbers as 5.82·10⁸ want room.
 largest = high(high(abs(L_min), abs(H_max)), high(high(abs(U_min), abs(U_max)), high(abs(P_min), abs(P_max))))
@@ -81,11 +85,11 @@ do for [kind in kinds] {
     unset xlabel
 
     eval begin_panel(0) . value_range(L_min, H_max)
-    eval name_axis(axis_of("thermodynamics.tsv", "temperature", "{/:Italic T}", "{/:Italic T} / {/:Italic T}_0"), label)
+    eval name_axis(axis_T, label)
     set key on at graph 1, graph 1.22 right top vertical maxrows 1 noautotitle
-    plot for [i = 1:kinetic] seen("thermodynamics.tsv", 3) using (ps * $2):3 with lines title "kinetic" \
+    plot for [i = 1:kinetic] seen("thermodynamics.tsv", 3) using (ps * $2):(K * $3) with lines title "kinetic" \
             linewidth 1.2 linecolor rgb blue, \
-        for [i = 1:configurational] seen("thermodynamics.tsv", 6) using (ps * $2):6 with points title "configurational" \
+        for [i = 1:configurational] seen("thermodynamics.tsv", 6) using (ps * $2):(K * $6) with points title "configurational" \
             pointtype 7 pointsize 0.5 linecolor rgb vermillion
 
     eval begin_panel(1) . value_range(U_min, U_max)
@@ -96,8 +100,8 @@ do for [kind in kinds] {
 
     if (total > 0) {
         eval begin_panel(2) . value_range(V_min, V_max)
-        eval name_axis(axis_of("thermodynamics.tsv", "total_energy", "{/:Italic E}", "{/:Italic E} / {/:Italic k}_B{/:Italic T}_0"), label)
-        plot seen("thermodynamics.tsv", total) using (ps * $2):total with lines linewidth 1.2 linecolor rgb ink
+        eval name_axis(axis_E, label)
+        plot seen("thermodynamics.tsv", total) using (ps * $2):(kJ * column(total)) with lines linewidth 1.2 linecolor rgb ink
     }
 
     eval begin_panel(panels - 1) . value_range(P_min, P_max)

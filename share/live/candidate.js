@@ -28,7 +28,7 @@ export class Candidate {
     }
     const { number, error, temperature, temperature_unit: unit } = candidate;
     const said = error === null ? "it failed" : `fitness F = ${digits(error, 4)}`;
-    const text = `Candidate ${number} of this iteration: ${said}; k_B T = ${digits(temperature, 4)}${unitOf(unit)}.`;
+    const text = `Candidate ${number} of this iteration: ${said}; T = ${digits(temperature, 4)}${unitOf(unit)}.`;
     for (const { name, unit: u, r_unit: r, r: x, value } of candidate.curves) {
       const plot = this.plot(name, `candidate that was simulated last: ${symbolOf(name)}${of(name)}`);
       plot.show([curve("candidate", x, value, 0)], { x: `r${unitOf(r)}`, y: `${symbolOf(name)}${unitOf(u)}` });

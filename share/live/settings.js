@@ -20,9 +20,11 @@ const spoken = {
 };
 
 // A field as that file speaks: its limits and defaults are reduced numbers, of which 0 alone is the same.
-function speak(field, system) {
-  const unit = (spoken[system] || []).reduce((text, [from, to]) => text.replaceAll(from, to), field.unit || "");
-  if (unit === (field.unit || ""))
+function speak(field, file) {
+  const system = isObject(file.units) ? file.units.system : file.units, dimensions = (file.scene || file).dimensions || 3;
+  const words = spoken[system] || [], own = field.unit || "";
+  const unit = words.reduce((text, [from, to]) => text.replaceAll(from, to), own).replace("^d", words.length ? `^${dimensions}` : "^d");
+  if (unit === own)
     return field;
   const known = (value, other) => (Math.abs(value) < 1e-300 ? value : other);
   return { ...field, unit, minimum: known(field.minimum, -Infinity), maximum: known(field.maximum, Infinity),
@@ -118,7 +120,7 @@ export class Settings {
   }
 
   line(name, told, value, rebuild = false) {
-    const field = speak(told, this.value.units);
+    const field = speak(told, this.value);
     const id = "field-" + name + "-" + Math.random().toString(36).slice(2, 8), now = value[name];
     const input = field.choices && field.type === "choice" ? element("select", { id },
       ...(field.required ? [] : [element("option", { value: "", textContent: "—" })]),

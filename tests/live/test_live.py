@@ -301,13 +301,16 @@ class Page(PageTest):
         scene = {"units": "nm-ps", "box": [3, 3, 3], "particles": {"count": 300, "mass": 18}, "temperature": 298}
         with open(os.path.join(self.folder, "nm.json"), "w", encoding="utf-8") as file:
             json.dump(scene, file)
+        with open(os.path.join(self.folder, "used.json"), "w", encoding="utf-8") as file:
+            json.dump({**scene, "units": {"system": "nm-ps", "length": 0.46, "temperature": 298}}, file)
         for name, units in (("nm.json", ("box [nm]", "temperature [K]", "time_step [ps]")),
+                            ("used.json", ("box [nm]", "temperature [K]", "time_step [ps]")),
                             ("scene.json", ("box [lambda]", "temperature [T_0]", "time_step [tau]"))):
             self.begin("live", name)
             self.at("tab-settings").click()
             self.wait(lambda units=units: all(unit in self.text("settings") for unit in units))
             field = self.browser.find_element("css selector", "#settings input[data-name='time_step']")
-            self.assertEqual(field.get_attribute("placeholder") == "", name == "nm.json")
+            self.assertEqual(field.get_attribute("placeholder") == "", name != "scene.json")
             self.browser.quit()
             self.served.end()
         self.browser = None

@@ -66,7 +66,7 @@ class Steering(PageTest):
         self.wait(lambda: self.phase() == "paused")
         axis, curves, text = self.candidate("potential")
         self.assertIn("Φ", axis)
-        self.assertRegex(text, r"^Candidate [1-8] of this iteration: (fitness F = 0?\.?\d[\d.e-]*|it failed); k_B T = [01]\.\d+ \[T_0\]\.$")
+        self.assertRegex(text, r"^Candidate [1-8] of this iteration: (fitness F = 0?\.?\d[\d.e-]*|it failed); T = [01]\.\d+ \[T_0\]\.$")
         self.assertAlmostEqual(curves["candidate"][-1]["y"], 0)
         self.assertGreater(len(curves["candidate"]), 10)
         _, curves, _ = self.candidate("rdf")

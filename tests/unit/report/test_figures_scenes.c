@@ -212,6 +212,43 @@ static void test_the_one_size_of_clusters_is_told(void **state) {
     figure_folders_write(folder, "clusters.tsv", "# size[1]\tshare[1]\tclusters[1]\n3000\t1\t1\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_print(folder, "clusters", ">3000<"));
+    assert_true(figure_folders_print(folder, "clusters", "share of all particles"));
+    figure_folders_write(
+        folder, "used.json",
+        "{\n\t\"clusters\":\t{\n\t\t\"distance\":\t1,\n\t\t\"types\":\t\"H T\"\n\t}\n}\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_print(folder, "clusters", "share of all H and T beads"));
+}
+
+/// A reduced scene with "units": no figure has λ, T_0 or k_B T_0 beside nm and kJ/mol.
+static void test_figures_are_all_in_the_units_that_are_given(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    static const char *const figures[] = {"simulation", "configuration"};
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "given units");
+    figure_folders_write(
+        folder, "used.json",
+        "{\n\t\"dimensions\":\t3,\n\t\"box\":\t[8, 8, 8],\n\t\"units\":\t{\n"
+        "\t\t\"length\":\t0.5,\n\t\t\"temperature\":\t300,\n\t\t\"mass\":\t3e-26\n\t}\n}\n");
+    figure_folders_write(folder, "configuration.tsv",
+                         "# x[lambda]\ty[lambda]\tz[lambda]\n5\t5\t2\n2\t2\t0.5\n8\t7\t0.5\n");
+    figure_folders_write(
+        folder, "thermodynamics.tsv",
+        "# step\ttime[tau]\ttemperature[T_0]\tpotential_energy[k_B.T_0]\t"
+        "pressure[k_B.T_0/lambda^d]\ttemperature_configurational[T_0]\ttotal_energy[k_B.T_0]\t"
+        "time[ps]\tpotential_energy[kJ/mol]\tpressure[bar]\n"
+        "0\t0\t0.99\t1\t3\t1\t2\t0\t2.494339\t900\n1\t0.1\t1.01\t2\t3\t1\t3\t70\t4.988678\t900\n");
+    figure_folders_draw(folder);
+    for (int k = 0; k < 2; k++) {
+        assert_true(figure_folders_drawn(folder, figures[k]));
+        assert_false(figure_folders_print(folder, figures[k], "λ"));
+        assert_false(figure_folders_print(folder, figures[k], ">B<")); // of k_B
+    }
+    assert_true(figure_folders_print(folder, "configuration", "nm"));
+    assert_true(figure_folders_print(folder, "configuration", ">4<")); // the edge of the box
+    assert_true(figure_folders_print(folder, "simulation", "K"));
+    assert_true(figure_folders_print(folder, "simulation", ">300<"));
 }
 
 /// Sweeps of Monte Carlo are no times, and have no unit.
@@ -271,6 +308,7 @@ int main(void) {
         cmocka_unit_test(test_flow_shows_its_obstacle),
         cmocka_unit_test(test_pressure_is_over_lengths_of_as_many_dimensions),
         cmocka_unit_test(test_the_one_size_of_clusters_is_told),
+        cmocka_unit_test(test_figures_are_all_in_the_units_that_are_given),
         cmocka_unit_test(test_vectors_of_molecules_live_for_times_or_sweeps),
         cmocka_unit_test(test_groups_of_a_fit_have_the_colours_of_its_rdf),
     };
