@@ -8,11 +8,9 @@ from typing import Any
 
 
 def _in_notebook() -> bool:
-    try:
-        from IPython import get_ipython
-    except ImportError:
-        return False
-    return type(get_ipython()).__name__ == "ZMQInteractiveShell"
+    # A notebook has it; a child that is forked while it is imported here would wait for it for ever.
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", None)
+    return shell is not None and type(shell()).__name__ == "ZMQInteractiveShell"
 
 
 def _duration(seconds: float) -> str:

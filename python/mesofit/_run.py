@@ -25,6 +25,11 @@ log = logging.getLogger("mesofit")
 
 _WARNING = "mesofit: warning: "
 _LOOK = 0.1  # seconds between looks at how far it is
+# What threads have in common in Python: the size of stacks of those that begin, the lock of `tempfile`.
+# A child of a fork has locks, but not the thread that would open them.
+_common = threading.RLock()
+os.register_at_fork(before=_common.acquire, after_in_parent=_common.release,
+                    after_in_child=_common.release)
 
 
 class Folder:
@@ -33,7 +38,8 @@ class Folder:
     def __init__(self, path: Any = None) -> None:
         self.temporary = path is None
         if path is None:
-            path = tempfile.mkdtemp(prefix="mesofit-")
+            with _common:
+                path = tempfile.mkdtemp(prefix="mesofit-")
             weakref.finalize(self, _remove, path, os.getpid())
         self.path = absolute(path, "folder")
 
@@ -71,10 +77,6 @@ def _level() -> int:
 
 
 _STACK = 8 << 20  # of a thread that works for the library, whatever threads of the user's have [bytes]
-_beginning = threading.Lock()  # the size of stacks is common to all threads that begin
-# A child of a fork has the lock, but not the thread that would open it.
-os.register_at_fork(before=_beginning.acquire, after_in_parent=_beginning.release,
-                    after_in_child=_beginning.release)
 
 
 class Work:
@@ -98,7 +100,7 @@ class Work:
 
     def _begin(self) -> None:
         thread = threading.Thread(target=self._do, name="mesofit", daemon=True)
-        with _beginning:
+        with _common:
             before = threading.stack_size(_STACK)
             try:
                 thread.start()

@@ -139,6 +139,23 @@ def test_threads_have_a_stack_that_suffices():
     assert done.returncode == 0, done.stderr
 
 
+def test_children_that_are_forked_beside_a_first_run_go_on():
+    """Python's own locks, of a module that is imported and of `tempfile`, are held by first runs."""
+    code = ("import os, signal, sys, threading\nimport mesofit\n"
+            f"run = lambda: mesofit.simulate({SCENE!r}, measure={SHORT!r}, threads=1)\n"
+            "thread = threading.Thread(target=run)\nthread.start()\n"
+            "statuses = []\n"
+            "for _ in range(3):\n"
+            "    child = os.fork()\n"
+            "    if child == 0:\n"
+            "        signal.alarm(20)\n        run()\n        os._exit(0)\n"
+            "    statuses.append(os.waitpid(child, 0)[1])\n"
+            "thread.join()\nsys.exit(any(statuses))\n")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                          cwd=os.path.dirname(os.path.dirname(mesofit.__file__)))
+    assert done.returncode == 0, done.stderr
+
+
 def test_children_that_are_forked_beside_a_run_go_on():
     """One in ten hung: of a lock of the library, or of the package, that a thread held."""
     stop, times = threading.Event(), []
