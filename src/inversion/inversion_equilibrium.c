@@ -228,9 +228,24 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
     return STATUS_OK;
 }
 
+/// Whether replicas that began on both sides scatter by so little that what each of them still
+/// remembers does not matter: halves that are not apart differ by no more than twice that.
+static bool agrees_anyway(const struct inversion_state *state) {
+    static const double part_of_precision = 1.0 / 3;
+    const struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
+    if (unequilibrated->drifts || unequilibrated->apart || !has_sides(&state->replicas))
+        return false;
+    for (int k = 0; k < state->assessment.sections; k++) {
+        const struct inversion_section *section = &state->assessment.section[k];
+        if (!(section->own_noise < part_of_precision * section->precision))
+            return false;
+    }
+    return true;
+}
+
 void mf_inversion_equilibrium_reset(struct inversion_state *state) {
     struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
-    if (!unequilibrated->found)
+    if (!unequilibrated->found || agrees_anyway(state))
         state->work.mixed = true;
     if (state->work.mixed)
         unequilibrated->found = unequilibrated->drifts;

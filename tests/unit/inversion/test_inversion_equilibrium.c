@@ -119,6 +119,35 @@ static void test_what_replicas_remember_is_noise_once_they_have_mixed(void **sta
     gsl_rng_free(rng);
 }
 
+/// What replicas that began on both sides remember for ever does not matter where they scatter by
+/// much less than what was asked for; where they drift or are apart, or began alike, it does.
+static void test_what_is_remembered_may_be_too_little_to_matter(void **state) {
+    (void)state;
+    static const struct {
+        double noise; ///< of a precision of 0.003
+        bool sides, drifts, apart, settled;
+    } cases[] = {{0.0009, true, false, false, true},
+                 {0.0011, true, false, false, false},
+                 {0.0009, false, false, false, false},
+                 {0.0009, true, true, false, false},
+                 {0.0009, true, false, true, false}};
+    static struct made made;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct inversion_section *section = &made.state.assessment.section[0];
+        struct inversion_unequilibrated *is = &made.state.assessment.unequilibrated;
+        make(&made, rng, 0, 0);
+        made.state.replicas.begins[REPLICAS_STRETCH] = cases[k].sides;
+        section->own_noise = cases[k].noise;
+        section->precision = 0.003;
+        *is = (struct inversion_unequilibrated){
+            .found = true, .drifts = cases[k].drifts, .apart = cases[k].apart};
+        mf_inversion_equilibrium_reset(&made.state);
+        assert_int_equal(is->found, !cases[k].settled);
+    }
+    gsl_rng_free(rng);
+}
+
 /// Replicas that remember for a part of their samples (Ornstein and Uhlenbeck), and began on both
 /// sides of what they have come to.
 static void make_slow(struct made *made, gsl_rng *rng, double time, double side) {
@@ -363,6 +392,7 @@ int main(void) {
         cmocka_unit_test(test_equilibrium_samples_are_hardly_ever_found_not_to_be),
         cmocka_unit_test(test_what_has_not_settled_is_named),
         cmocka_unit_test(test_what_replicas_remember_is_noise_once_they_have_mixed),
+        cmocka_unit_test(test_what_is_remembered_may_be_too_little_to_matter),
         cmocka_unit_test(test_replicas_are_draws_of_equilibrium_when_they_forgot_where_they_began),
         cmocka_unit_test(test_slowest_number_is_told_with_its_independent_samples),
         cmocka_unit_test(test_error_of_samples_is_that_of_replicas_that_remember),
