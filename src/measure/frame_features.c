@@ -96,7 +96,7 @@ static double later_mean(const struct look *look) {
 /// Keep what settles later than all before, or drifts more.
 static void keep(struct look *look, struct frame_features_slowest now) {
     const struct frame_features_slowest *const slowest = &look->slowest;
-    if (look->drift ? now.drift.ratio > slowest->drift.ratio : now.frames > slowest->frames)
+    if (look->drift ? now.drift.evidence > slowest->drift.evidence : now.frames > slowest->frames)
         look->slowest = now;
 }
 

@@ -104,8 +104,111 @@ size_t mf_equilibration_length_of_events(const double *events, size_t samples) {
     return pow((double)end / (double)samples, together) < chance ? end : 0;
 }
 
-/// Parts of a series that may drift, and the farthest that are compared for their noise.
-enum { PARTS = 20, LAGS = 2 };
+// Drift -------------------------------------------------------------------------------------------
+
+/// Means of a long series by which it is judged, at most; parts of it, between which it may have a
+/// step; and the farthest that are compared for their noise.
+enum { POINTS = 512, PARTS = 20, LAGS = 2 };
+
+/// Independent samples make the freedom of an error a quarter of their number: how many they are is
+/// known no better where samples remember each other.
+static const double freedom_share = 0.25;
+
+struct points {
+    double value[POINTS];
+    size_t count;
+};
+
+static void find_points(const double *series, size_t samples, struct points *points) {
+    const size_t each = (samples - 1) / POINTS + 1;
+    points->count = samples / each;
+    for (size_t n = 0; n < points->count; n++) {
+        struct running_mean mean = {0};
+        for (size_t k = n * each; k < (n + 1) * each; k++)
+            mf_statistics_add(&mean, series[k]);
+        points->value[n] = mean.mean;
+    }
+}
+
+/// Whether a number is off from 0, whose variance is so many times that of one point: −lg of the
+/// chance in Student's distribution.
+/// @param[in] left  what the points are off, if it is not 0
+static double judge(double number, double times, const struct points *left) {
+    double squares = 0;
+    for (size_t n = 0; n < left->count; n++)
+        squares += left->value[n] * left->value[n];
+    const double count = (double)left->count;
+    const double inefficiency = mf_statistics_inefficiency(left->value, left->count, 1, 1);
+    const double freedom = freedom_share * count / inefficiency - 1;
+    const double error = sqrt(times * inefficiency * squares / (count - 2));
+    if (!(freedom > 1))
+        return 0;
+    return -log10(2 * gsl_cdf_tdist_Q(fabs(number) / error, freedom));
+}
+
+/// Of a line through the points: their slope.
+static double judge_line(const struct points *points) {
+    const double middle = 0.5 * ((double)points->count - 1);
+    struct points left = *points;
+    double mean = 0, slope = 0, squares = 0;
+    for (size_t n = 0; n < points->count; n++) {
+        const double time = (double)n - middle;
+        mean += points->value[n] / (double)points->count;
+        slope += time * points->value[n];
+        squares += time * time;
+    }
+    slope /= squares;
+    for (size_t n = 0; n < points->count; n++)
+        left.value[n] -= mean + slope * ((double)n - middle);
+    if (!(fabs(slope) * (double)points->count > rounding * fabs(mean)))
+        return 0;
+    return judge(slope, 1 / squares, &left);
+}
+
+static struct running_mean mean_of(const struct points *points, size_t begin, size_t end) {
+    struct running_mean mean = {0};
+    for (size_t n = begin; n < end; n++)
+        mf_statistics_add(&mean, points->value[n]);
+    return mean;
+}
+
+/// The step that leaves least.
+static size_t find_step(const struct points *points) {
+    double least = INFINITY;
+    size_t best = 0;
+    for (size_t part = 1; part < PARTS; part++) {
+        const size_t at = part * points->count / PARTS;
+        const double left =
+            mean_of(points, 0, at).squares + mean_of(points, at, points->count).squares;
+        if (!(left < least))
+            continue;
+        least = left;
+        best = at;
+    }
+    return best;
+}
+
+/// Of that step, which may be anywhere: its height.
+static double judge_step(const struct points *points, struct equilibration_drift *drift) {
+    const size_t at = find_step(points);
+    const double before = (double)at, after = (double)(points->count - at);
+    const struct running_mean first = mean_of(points, 0, at);
+    const struct running_mean second = mean_of(points, at, points->count);
+    struct points left = *points;
+    for (size_t n = 0; n < points->count; n++)
+        left.value[n] -= n < at ? first.mean : second.mean;
+    const double height = second.mean - first.mean;
+    const double variance = mf_statistics_inefficiency(left.value, left.count, 1, 1) *
+                            (first.squares + second.squares) / (before + after - 2);
+    *drift = (struct equilibration_drift){.part = before / (before + after),
+                                          .before = first.mean,
+                                          .after = second.mean,
+                                          .before_error = sqrt(variance / before),
+                                          .after_error = sqrt(variance / after)};
+    if (!(fabs(height) > rounding * fabs(second.mean)))
+        return 0;
+    return judge(height, 1 / before + 1 / after, &left) - log10(PARTS - 1);
+}
 
 static void find_parts(const double *series, size_t samples, double part[PARTS]) {
     for (size_t b = 0; b < PARTS; b++) {
@@ -132,11 +235,11 @@ static double noise_of(const double part[PARTS], size_t lag) {
     return 0.5 * sum / (double)(PARTS - 2 * lag);
 }
 
-struct equilibration_drift mf_equilibration_drift(const double *series, size_t samples) {
-    struct equilibration_drift most = {0};
-    double part[PARTS], noise = 0, all = 0, first = 0;
-    if (samples < min_samples)
-        return most;
+/// Of all parts, the first k of them against the others. A ratio of 7.5 to the noise is as rare as
+/// a chance of 0.001.
+static double judge_parts(const double *series, size_t samples) {
+    static const double usual = 7.5, each = 2;
+    double part[PARTS], noise = 0, all = 0, first = 0, most = 0;
     find_parts(series, samples, part);
     for (size_t lag = 1; lag <= LAGS; lag++)
         noise = fmax(noise, noise_of(part, lag));
@@ -144,17 +247,22 @@ struct equilibration_drift mf_equilibration_drift(const double *series, size_t s
         all += part[b];
     for (size_t k = 1; k < PARTS; k++) {
         first += part[k - 1];
-        const double left = (double)(PARTS - k), before = first / (double)k;
-        const double after = (all - first) / left, off = fabs(before - after);
+        const double left = (double)(PARTS - k), after = (all - first) / left;
+        const double off = fabs(first / (double)k - after);
         const double error = sqrt(noise * (1 / (double)k + 1 / left));
-        const double ratio = off > rounding * fabs(after) ? off / error : 0;
-        if (ratio > most.ratio)
-            most = (struct equilibration_drift){.ratio = ratio,
-                                                .part = (double)k / PARTS,
-                                                .before = before,
-                                                .after = after,
-                                                .before_error = sqrt(noise / (double)k),
-                                                .after_error = sqrt(noise / left)};
+        most = fmax(most, off > rounding * fabs(after) ? off / error : 0);
     }
-    return most;
+    return 3 + (most - usual) / each;
+}
+
+struct equilibration_drift mf_equilibration_drift(const double *series, size_t samples) {
+    struct equilibration_drift drift = {0};
+    struct points points;
+    if (samples < min_samples)
+        return drift;
+    find_points(series, samples, &points);
+    const double step = judge_step(&points, &drift);
+    drift.evidence =
+        fmax(fmax(step, judge_line(&points)) - log10(2), fmax(0, judge_parts(series, samples)));
+    return drift;
 }

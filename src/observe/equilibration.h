@@ -28,9 +28,9 @@ size_t mf_equilibration_length(const double *series, size_t samples);
 /// @param[in] events  shape [samples]: how many each has
 size_t mf_equilibration_length_of_events(const double *events, size_t samples);
 
-/// Where a series splits best into two parts of different means.
+/// How a series changes: where it splits best into two parts of different means.
 struct equilibration_drift {
-    double ratio;         ///< of their difference to what noise would make of it
+    double evidence;      ///< −lg of the chance that a series which does not change is so
     double part;          ///< of the samples that is before
     double before, after; ///< means
     double before_error, after_error;
@@ -38,25 +38,31 @@ struct equilibration_drift {
 
 /// Whether a series changes along its length: a way that goes on to its end, or a step anywhere.
 ///
-/// Of means m_b over B = 20 parts the first k are compared with the others, for each k, by
+/// The slope of a line through all samples, and the height of that one of 19 steps which leaves
+/// least, are compared with their errors by what the samples are off that line or step: a change,
+/// however strong, does not hide itself in its error. Errors are by the inefficiency g of what is
+/// left (base/statistics.h), and Student's distribution has n/(4g) − 1 degrees of freedom, since g
+/// is not known well either. The chance counts 2 tests, and the 19 steps. More than 512 samples are
+/// joined to so many.
+///
+/// Where samples remember each other for long, the same is seen better by means m_b over B = 20
+/// parts, the first k of which are compared with the others, for each k, by
 ///
 ///   |mean of k − mean of B − k| / (s sqrt(1/k + 1/(B − k))),
 ///
-/// and the largest ratio counts. s² is the noise of a part: half of the mean of (m_{b+l} − m_b)²
-/// for l = 1 or 2, whichever is larger, without the l largest squares, which a step has. Neighbours
-/// see little of a drift, however strong it is, while an error by the scatter about one mean grows
-/// with it; and where samples remember each other over several parts, s grows with l. A straight
-/// way without noise has 15.8, a step infinity. 0 for fewer than 20 samples. Tested:
-/// test_equilibration_drift.
+/// s² being the noise of a part: half of the mean of (m_{b+l} − m_b)² for l = 1 or 2, whichever is
+/// larger, without the l largest squares, which a step has. Neighbours see little of a drift; where
+/// samples remember each other over several parts, s grows with l. The largest ratio R counts as
+/// an evidence of 3 + (R − 7.5)/2. 0 for fewer than 20 samples. Tested: test_equilibration_drift.
 /// @param[in] series  shape [samples]
 struct equilibration_drift mf_equilibration_drift(const double *series, size_t samples);
 
-/// Whether the largest ratio of so many series is drift, and no chance: above 7.5 + 2 lg(count).
+/// Whether the strongest evidence of so many series is drift, and no chance.
 ///
-/// False alarms of one series: less than one in 1000 with a memory of up to a fiftieth of its
-/// length, in 100 with a twentieth. Found, of 400 white samples: ways of 1, 2, 4 standard
-/// deviations in 18, 97, 100 %. Of 30 series together, some percent fewer, with as few alarms.
-/// Tested: test_equilibration_drift.
+/// False alarms of one series: one in 1000 with a memory of up to a fiftieth of its length, in 100
+/// with a twentieth; of 30 series together as few. Found, of 400 samples: ways of 1 and 2 standard
+/// deviations in 97 and 100 % of white ones, of 4 and 8 in 70 and 100 % with a memory of a
+/// fiftieth. Tested: test_equilibration_drift.
 static inline bool equilibration_drifts(const struct equilibration_drift *drift, size_t count) {
-    return count > 0 && drift->ratio > 7.5 + 2 * log10((double)count);
+    return count > 0 && drift->evidence > 3 + log10((double)count);
 }
