@@ -42,8 +42,12 @@ const struct observable *const mf_observables[] = {
     &mf_weighted_density,
     NULL,
 };
+_Static_assert(sizeof mf_observables / sizeof *mf_observables <= OBSERVABLES_MAX + 1,
+               "OBSERVABLES_MAX");
 
 struct observable_kind mf_observable_kind(int kind) {
+    if (kind >= OBSERVABLE_TARGETS)
+        return (struct observable_kind){0};
     for (size_t place = 0; mf_observables[place]; place++) {
         const struct observable_target *targets = mf_observables[place]->targets;
         for (size_t n = 0; targets && targets[n].name; n++)

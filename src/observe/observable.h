@@ -24,7 +24,9 @@ struct observable_use;
 /// The script that draws all columns of the first file but errors, and what ends with _boltzmann.
 #define OBSERVABLE_FIGURE_OF_GROUPS "groups"
 
-enum { OBSERVABLES_MAX = 32, OBSERVABLE_MAX_SPANS = 80 };
+/// Observables in the list, targets of all of them, and spans of one, at most. What is more is found
+/// when the list is compiled and by test_observable; a target beyond them is not known to run files.
+enum { OBSERVABLES_MAX = 32, OBSERVABLE_TARGETS = 32, OBSERVABLE_MAX_SPANS = 80 };
 
 /// Where and of what results are written.
 struct observable_results {
@@ -138,7 +140,7 @@ struct observable_use {
     void *state, *settings;
 };
 
-/// A target, by its number among those of the whole list.
+/// A target, by its number below OBSERVABLE_TARGETS among those of the whole list.
 struct observable_kind {
     const struct observable *observable; ///< NULL: there are not so many
     const struct observable_target *target;

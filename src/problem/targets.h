@@ -16,7 +16,7 @@ enum target_kind {
     TARGET_MSD,
     TARGET_DIFFUSION,
     TARGET_PRESSURE,
-    TARGETS = 24 ///< at most
+    TARGETS = OBSERVABLE_TARGETS ///< at most
 };
 
 /// Name in run files and tables; NULL beyond the last kind.

@@ -338,8 +338,8 @@ static void doubt(struct run *run, const struct verification *verification) {
     struct standing *standing = &run->standing;
     if (!standing->converged && !standing->exhausted)
         return;
-    run->doubted =
-        mf_fit_verify_contradicts(&run->fit, verification, &standing->accuracy, standing->reason);
+    run->doubted = mf_fit_verify_any_contradicts(&run->fit, verification, &standing->accuracy,
+                                                 standing->reason);
     if (run->doubted)
         standing->converged = standing->exhausted = false;
     else if (standing->converged &&

@@ -162,9 +162,10 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
                                            noise_margin, units, reason);
 }
 
-bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verification *verification,
-                               const struct fit_accuracy *of_fit,
-                               char reason[INVERSE_REASON_SIZE]) {
+bool mf_fit_verify_any_contradicts(const struct fit_file *fit,
+                                   const struct verification *verification,
+                                   const struct fit_accuracy *of_fit,
+                                   char reason[INVERSE_REASON_SIZE]) {
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
         if (!is_contradicted(state, fit->method, &verification[s], of_fit, of_fit->noise[s],
@@ -185,7 +186,7 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
     const double begun = clock_process_seconds();
     char reason[INVERSE_REASON_SIZE];
     TRY(verify_round(fit, 0, curve, number, listener, verification));
-    if (of_fit && mf_fit_verify_contradicts(fit, verification, of_fit, reason)) {
+    if (of_fit && mf_fit_verify_any_contradicts(fit, verification, of_fit, reason)) {
         mf_progress_print(progress,
                           "the verification contradicts the fit, and begins "
                           "again with %d times as many steps before its samples",

@@ -38,8 +38,10 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
 /// (problem/verify_agreement.h). Other methods, and inversions by few coefficients, do not say that
 /// they agree, but how far they are off: that is what must be borne out.
 /// @param[in] verification  shape [states]
-bool mf_fit_verify_contradicts(const struct fit_file *fit, const struct verification *verification,
-                               const struct fit_accuracy *of_fit, char reason[INVERSE_REASON_SIZE]);
+bool mf_fit_verify_any_contradicts(const struct fit_file *fit,
+                                   const struct verification *verification,
+                                   const struct fit_accuracy *of_fit,
+                                   char reason[INVERSE_REASON_SIZE]);
 
 /// Tables of state number s: the first has those of the run's folder, the others have folders and
 /// figures of their own. Fails: IO, NO_MEMORY.

@@ -45,6 +45,7 @@ static void test_kinds_are_numbered_through_the_list(void **state) {
             assert_int_equal(kind.place, place);
             assert_int_equal(kind.number, n);
         }
+    assert_in_range(kinds, 1, OBSERVABLE_TARGETS);
     assert_null(mf_observable_kind(kinds).observable);
 }
 
