@@ -2,7 +2,7 @@
 #include "defaults/fit_check.h"
 
 #include "defaults/fit_densities.h"
-#include "matching/matchings.h"
+#include "defaults/methods.h"
 #include "targets/target_sanity.h"
 #include "io/units_scale.h"
 #include "observe/kirkwood_buff_observable.h"
@@ -75,13 +75,17 @@ static bool is_inverted(const struct fit_file *fit, int kind) {
     return false;
 }
 
+static bool fits_molecules(const struct inverse_method *method) {
+    return method->knows_molecules;
+}
+
 /// A group is found from its own distribution.
 static enum status check_molecules(const struct fit_file *fit, const char *file) {
+    char others[METHODS_TEXT_SIZE];
     if (scene_has_molecules(&fit->scene.molecules) && !fit->method->knows_molecules)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: method.name: \"%s\" does not fit molecules; \"imc\", \"ibi\", "
-                              "\"auto\", \"gauss-newton\" and the optimisers do",
-                              file, fit->method->name);
+                              "%s: method.name: \"%s\" does not fit molecules; %s do", file,
+                              fit->method->name, mf_methods_list(fits_molecules, others));
     for (int kind = 0; mf_targets_name(kind); kind++)
         if (is_inverted(fit, kind) && !fit->files.use[kind].fitted)
             return mf_status_fail(STATUS_BAD_INPUT,
@@ -90,32 +94,37 @@ static enum status check_molecules(const struct fit_file *fit, const char *file)
     return STATUS_OK;
 }
 
+static bool fits_integrals(const struct inverse_method *method) {
+    return mf_methods_fits_any_target(method) || method->meets_integrals;
+}
+
 /// Integrals of Kirkwood and Buff are met by linear equations, not by a ramp.
 static enum status check_integrals(const struct fit_file *fit, const char *file) {
-    if (fit->method->kind != INVERSE_INVERSION || fit->method->meets_integrals ||
-        !targets_ask(&fit->problem.targets, mf_kirkwood_buff_kind()))
+    char others[METHODS_TEXT_SIZE];
+    if (fits_integrals(fit->method) || !targets_ask(&fit->problem.targets, mf_kirkwood_buff_kind()))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: target.kirkwood_buff: \"%s\" does not fit it; \"imc\", \"auto\", "
-                          "\"gauss-newton\" and the optimisers do; with \"fitted\": \"no\" it "
-                          "is compared with",
-                          file, fit->method->name);
+                          "%s: target.kirkwood_buff: \"%s\" does not fit it; %s do; with "
+                          "\"fitted\": \"no\" it is compared with",
+                          file, fit->method->name, mf_methods_list(fits_integrals, others));
 }
 
 /// An inversion changes the potential of all pairs by the response of all pairs.
 static enum status check_intermolecular(const struct fit_file *fit, const char *file) {
+    char others[METHODS_TEXT_SIZE];
     if (fit->method->kind != INVERSE_INVERSION ||
         !targets_ask(&fit->problem.targets, mf_rdf_intermolecular_kind()))
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: target.intermolecular_rdf.fitted: \"%s\" does not fit it; where molecules exclude all "
-        "intramolecular pairs it is the same as rdf: give the file as \"rdf\"; \"gauss-newton\" "
-        "and the optimisers fit it, and \"no\" compares it with the result",
-        file, fit->method->name);
+        "intramolecular pairs it is the same as rdf: give the file as \"rdf\"; %s fit it, and "
+        "\"no\" compares it with the result",
+        file, fit->method->name, mf_methods_list(mf_methods_fits_any_target, others));
 }
 
 static enum status check_unknowns(const struct fit_file *fit, const char *file) {
+    char others[METHODS_TEXT_SIZE];
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (fit->unknown[kind].wanted &&
             !(unknown_is_omega(kind) ? fit->method->finds_omega : fit->method->finds_potential))
@@ -127,11 +136,12 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
     for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
         if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != mf_kirkwood_buff_kind() &&
             !is_inverted(fit, kind) && targets_ask(&fit->problem.targets, kind))
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s: target.%s.fitted: \"%s\" does not fit it; \"gauss-newton\" and the optimisers "
-                "do, and \"no\" compares it with the result",
-                file, mf_targets_name(kind), fit->method->name);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: target.%s.fitted: \"%s\" does not fit it; %s do, and \"no\" "
+                                  "compares it with the "
+                                  "result",
+                                  file, mf_targets_name(kind), fit->method->name,
+                                  mf_methods_list(mf_methods_fits_any_target, others));
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
                               file);
@@ -154,19 +164,23 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
 }
 
 /// What moves the curves of all pairs would move that of pairs that there are not.
+static bool follows_pairs(const struct inverse_method *method) {
+    return method->kind == INVERSE_INVERSION || method == &mf_successive;
+}
+
 static enum status check_single_beads(const struct fit_file *fit, const char *file) {
     const struct composition *composition = &fit->scene.setup.composition;
-    const bool moves = fit->unknown[UNKNOWN_POTENTIAL].wanted &&
-                       fit->method->kind != INVERSE_INVERSION && fit->method != &mf_successive;
+    const bool moves = fit->unknown[UNKNOWN_POTENTIAL].wanted && !follows_pairs(fit->method);
+    char others[METHODS_TEXT_SIZE];
     for (int pair = 0; moves && pair < mf_composition_pairs(composition); pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(composition, pair, name);
         if (!mf_composition_has_pairs(composition, pair))
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s: method.name: a single bead has no pair %s, for which \"%s\" "
-                "would look for a potential; \"imc\", \"ibi\" and \"auto\" do not",
-                file, name, fit->method->name);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: method.name: a single bead has no pair %s, for which \"%s\" "
+                                  "would look for a potential; %s do not",
+                                  file, name, fit->method->name,
+                                  mf_methods_list(follows_pairs, others));
     }
     return STATUS_OK;
 }
@@ -175,13 +189,14 @@ static enum status check_single_beads(const struct fit_file *fit, const char *fi
 static enum status check_interactions(const struct fit_file *fit, const char *file) {
     const int others = fit->scene.setup.interactions - scene_has_molecules(&fit->scene.molecules) -
                        (fit->scene.many_body.law != NULL);
+    char methods[METHODS_TEXT_SIZE];
     if (fit->method->kind != INVERSE_INVERSION || others == 0)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "%s: scene.interactions: \"%s\" samples only pairs, molecules and "
-                          "\"many_body\"; use a method that simulates candidates, such as "
-                          "\"gauss-newton\"",
-                          file, fit->method->name);
+                          "\"many_body\"; use a method that simulates candidates: %s",
+                          file, fit->method->name,
+                          mf_methods_list(mf_methods_fits_any_target, methods));
 }
 
 /// Without velocities there is no VACF to be measured, and without time nothing that needs it.

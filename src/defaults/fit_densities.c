@@ -4,6 +4,7 @@
 #include "defaults/fit_densities.h"
 
 #include "base/memory.h"
+#include "defaults/methods.h"
 #include "observe/weighted_density.h"
 
 #include <math.h>
@@ -171,19 +172,21 @@ void mf_fit_densities_state(const struct fit_file *fit, struct inverse_problem *
         .order = INVERSE_LOCAL_DENSITY, .group = t, .bins = {0, 2 * curve->x[0], curve->points}};
 }
 
+static bool finds_energies(const struct inverse_method *method) {
+    return method->kind == INVERSE_INVERSION && method->knows_molecules && !method->restricted;
+}
+
 enum status mf_fit_densities_check(const struct fit_file *fit, const char *file) {
-    const struct inverse_method *method = fit->method;
+    char others[METHODS_TEXT_SIZE];
     const struct scene_many_body *many_body = &fit->scene.many_body;
     const int t = find_term(many_body);
-    const bool finds =
-        method->kind == INVERSE_INVERSION && method->knows_molecules && !method->restricted;
     if (t < 0)
         return STATUS_OK;
-    if (!finds)
+    if (!finds_energies(fit->method))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: method.name: \"%s\" does not find an \"energy\" that "
-                              "\"scene.many_body\" leaves out; \"auto\", \"imc\" and \"ibi\" do",
-                              file, method->name);
+                              "\"scene.many_body\" leaves out; %s do",
+                              file, fit->method->name, mf_methods_list(finds_energies, others));
     const double range = mf_rdf_bins_range(&fit->problem.targets.bins);
     const double cutoff = weight_cutoff(&many_body->law->term[t].weight);
     if (!fit->unknown[UNKNOWN_POTENTIAL].wanted || range >= (1 - rounding) * cutoff)

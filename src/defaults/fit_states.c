@@ -4,6 +4,7 @@
 #include "base/names.h"
 #include "base/rng.h"
 #include "defaults/fit_densities.h"
+#include "defaults/methods.h"
 #include "inversion/inversion.h"
 #include "io/units_scale.h"
 #include "problem/group_kind.h"
@@ -179,12 +180,16 @@ static enum status check_alike(const struct fit_file *fit, const struct fit_file
     return STATUS_OK;
 }
 
+static bool fits_states(const struct inverse_method *method) {
+    return method->knows_states;
+}
+
 enum status mf_fit_states_check(const struct fit_file *fit, const char *file) {
-    if (fit->others > 0 && !fit->method->knows_states)
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "%s: method.name: \"%s\" fits one state; \"imc\" and \"auto\" fit several", file,
-            fit->method->name);
+    char others[METHODS_TEXT_SIZE];
+    if (fit->others > 0 && !fits_states(fit->method))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: method.name: \"%s\" fits one state; %s fit several", file,
+                              fit->method->name, mf_methods_list(fits_states, others));
     for (size_t s = 0; s < fit->others; s++)
         TRY(check_alike(fit, &fit->other[s], file));
     return STATUS_OK;

@@ -51,7 +51,8 @@ static enum status update(struct inversion *inversion, double *extra) {
 static enum status create(void *inversion, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     if (problem->scene.box.dimensions != 3)
-        return mf_status_fail(STATUS_BAD_INPUT, "method.name: \"hnc\" is for three dimensions");
+        return mf_status_fail(STATUS_BAD_INPUT, "method.name: \"%s\" is for three dimensions",
+                              method->name);
     return mf_inversion_create(inversion, method, problem, parameters);
 }
 

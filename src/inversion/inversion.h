@@ -75,10 +75,14 @@ double *mf_inversion_damping(void *inversion);
 size_t mf_inversion_spans(void *inversion, struct memory_span *span);
 enum status mf_inversion_write(const void *inversion, const struct inverse_folder *folder) MUST_USE;
 
-/// What the records of the inversions have in common.
+/// What the records of the inversions have in common: of those without memory of their own, and of
+/// those whose state is another struct, with struct inversion as its first member, and functions
+/// that call mf_inversion_destroy and mf_inversion_spans. Tested: test_own_inversion.
 #define INVERSION_RECORD                                                                           \
-    .kind = INVERSE_INVERSION, .state_size = sizeof(struct inversion), .finds_potential = true,    \
-    .destroy = mf_inversion_destroy, .iterate = mf_inversion_iterate, .spans = mf_inversion_spans, \
+    INVERSION_RECORD_OF(struct inversion, mf_inversion_destroy, mf_inversion_spans)
+#define INVERSION_RECORD_OF(STATE, DESTROY, SPANS)                                                 \
+    .kind = INVERSE_INVERSION, .state_size = sizeof(STATE), .finds_potential = true,               \
+    .destroy = DESTROY, .iterate = mf_inversion_iterate, .spans = SPANS,                           \
     .write = mf_inversion_write, .damping = mf_inversion_damping
 
 /// The parameters that all have, which stand first in those of each method and in their tables.

@@ -64,8 +64,9 @@ static enum status create(void *inversion, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     if (targets_ask(&problem->targets, TARGET_PRESSURE))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "target.pressure: \"relative-entropy\" fits the structure alone; "
-                              "with \"fitted\": \"no\" it is only compared");
+                              "target.pressure: \"%s\" fits the structure alone; with \"fitted\": "
+                              "\"no\" it is only compared",
+                              method->name);
     return mf_inversion_create(inversion, method, problem, parameters);
 }
 

@@ -136,7 +136,6 @@ static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     enum status status = STATUS_OK;
     struct state *state = memory;
-    (void)method;
     state->own = *(const struct parameters *)parameters;
     state->problem = problem;
     state->progress = (struct progress){.reach = state->own.reach,
@@ -148,9 +147,9 @@ static enum status create(void *memory, const struct inverse_method *method,
     if (max_candidates(state) > POPULATION_MAX) {
         status =
             mf_status_fail(STATUS_BAD_INPUT,
-                           "method.name: \"gauss-newton\" needs %zu candidates in a round for %zu "
-                           "variables, and %d are the most",
-                           mf_surrogate_min_rows(state->parametrisation.variables),
+                           "method.name: \"%s\" needs %zu candidates in a round for %zu variables, "
+                           "and %d are the most",
+                           method->name, mf_surrogate_min_rows(state->parametrisation.variables),
                            state->parametrisation.variables, POPULATION_MAX);
         goto done;
     }
