@@ -133,8 +133,9 @@ static enum status sample(struct run *run, struct plan *plan) {
                                     {&mf_motion_observable, &run->motion, &plan->motion},
                                     {0}};
     TRY(mf_measure_equilibrate(&run->simulation, &plan->measure, &temperature, &plan->half));
+    const struct configuration first = mf_configuration_of(&run->simulation);
     for (struct observable_use *use = uses; use->observable; use++)
-        TRY(use->observable->begin(use->state, use->settings, &run->simulation, &plan->measure));
+        TRY(use->observable->begin(use->state, use->settings, &first, &plan->measure));
     return mf_measure_sample(&run->simulation, &plan->measure, uses, &plan->half);
 }
 

@@ -45,7 +45,8 @@ enum status mf_measured_molecules_begin(struct measured_molecules *measured,
                                         const struct measured_molecules_plan *plan,
                                         const struct mapping *mapping,
                                         const struct composition *composition) {
-    *measured = (struct measured_molecules){.molecules = plan->molecules, .mapping = mapping};
+    *measured = (struct measured_molecules){
+        .molecules = plan->molecules, .mapping = mapping, .composition = composition};
     TRY(mf_molecule_match(&measured->match, &plan->molecules->topology, plan->types, mapping,
                           composition, plan->file));
     TRY(plan_walks(measured));
@@ -68,23 +69,22 @@ static enum status add_masses(struct measured_molecules *measured, struct partic
     return STATUS_OK;
 }
 
-/// A simulation with the beads where the mapping has them.
-static enum status make_shell(struct measured_molecules *measured, double interval) {
+/// A configuration with the beads where the mapping has them.
+static enum status make_configuration(struct measured_molecules *measured, double interval) {
     const struct topology *topology = &measured->molecules->topology;
     const struct box box = {3, {without_end, without_end, without_end}};
-    TRY_ARRAY(measured->shell, 1);
-    struct simulation *shell = measured->shell;
-    shell->setup = (struct simulation_setup){.box = box,
-                                             .placement = {.count = (int64_t)topology->particles},
-                                             .time_step = interval,
-                                             .interaction = {{&mf_molecules, measured->molecules}},
-                                             .interactions = 1};
-    TRY(mf_particles_init(&shell->particles, &box, topology->particles));
-    TRY(mf_particles_join(&shell->particles, topology));
+    struct particles *particles = &measured->particles;
+    TRY(mf_particles_init(particles, &box, topology->particles));
+    TRY(mf_particles_join(particles, topology));
     for (uint32_t id = 0; id < topology->particles; id++)
-        shell->particles.id[measured->match.bead[id]] = id;
-    mf_particles_label_places(&shell->particles);
-    return add_masses(measured, &shell->particles);
+        particles->id[measured->match.bead[id]] = id;
+    mf_particles_label_places(particles);
+    measured->configuration = (struct configuration){.dimensions = 3,
+                                                     .composition = measured->composition,
+                                                     .molecules = measured->molecules,
+                                                     .time_step = interval,
+                                                     .particles = particles};
+    return add_masses(measured, particles);
 }
 
 // Frames ------------------------------------------------------------------------------------------
@@ -95,7 +95,7 @@ static void make_whole(struct measured_molecules *measured, const struct traject
     const struct topology_kind *kind = &measured->molecules->topology.kind[k];
     const int *order = measured->order + (size_t)k * measured->max_beads;
     const int *parent = measured->parent + (size_t)k * measured->max_beads;
-    double *const *position = measured->shell->particles.position;
+    double *const *position = measured->particles.position;
     for (int n = 0; n < kind->beads; n++) {
         const int from = parent[order[n]] < 0 ? order[0] : parent[order[n]];
         const size_t here = measured->match.bead[topology_id(kind, m, order[n])];
@@ -120,11 +120,11 @@ static void place_beads(struct measured_molecules *measured, const struct trajec
 
 enum status mf_measured_molecules_add(struct measured_molecules *measured,
                                       const struct trajectory_frame *beads) {
-    if (measured->shell == NULL)
+    if (measured->configuration.particles == NULL)
         return STATUS_OK;
     place_beads(measured, beads);
     for (const struct observable_use *use = measured->use; use->observable; use++)
-        TRY(use->observable->sample(use->state, measured->shell));
+        TRY(use->observable->sample(use->state, &measured->configuration));
     return STATUS_OK;
 }
 
@@ -149,7 +149,7 @@ static void add_lengths(const struct measured_molecules *measured,
                 for (int bead = 0; bead < 2; bead++)
                     place[bead] =
                         (int32_t)measured->match.bead[topology_id(kind, m, term->bead[bead])];
-                mf_bonded_measure(BONDED_BOND, 1, place, &measured->shell->particles, &length);
+                mf_bonded_measure(BONDED_BOND, 1, place, &measured->particles, &length);
                 group->sum += length;
                 group->count++;
             }
@@ -188,13 +188,12 @@ static enum status add_observable(struct measured_molecules *measured,
                                   struct observable_use *use) {
     const struct measure_plan plan = {.equilibration = -1, .samples = 0, .every = 1};
     use->observable = observable;
-    use->state = mf_memory_zeroed(1, observable->state_size);
     use->settings = mf_memory_zeroed(1, observable->settings_size);
-    TRY(use->state && use->settings ? STATUS_OK : STATUS_NO_MEMORY);
+    TRY(use->settings ? STATUS_OK : STATUS_NO_MEMORY);
     mf_fields_set_defaults(observable->fields, use->settings);
     if (bins > 0)
         ((struct bonded_settings *)use->settings)->bins = bins;
-    return observable->begin(use->state, use->settings, measured->shell, &plan);
+    return mf_observable_begin(use, &measured->configuration, &plan);
 }
 
 enum status mf_measured_molecules_start(struct measured_molecules *measured,
@@ -202,7 +201,7 @@ enum status mf_measured_molecules_start(struct measured_molecules *measured,
     struct observable_use *use = measured->use;
     if (measured->molecules == NULL)
         return STATUS_OK;
-    TRY(make_shell(measured, interval));
+    TRY(make_configuration(measured, interval));
     place_beads(measured, beads);
     find_rest(measured);
     for (int order = 0; order < BONDED_KINDS; order++)
@@ -240,14 +239,10 @@ enum status mf_measured_molecules_moments(const struct measured_molecules *measu
 
 void mf_measured_molecules_clear(struct measured_molecules *measured) {
     for (struct observable_use *use = measured->use; use->observable; use++) {
-        if (use->state)
-            use->observable->clear(use->state);
-        mf_memory_free(use->state);
+        mf_observable_end(use);
         mf_memory_free(use->settings);
     }
-    if (measured->shell)
-        mf_particles_clear(&measured->shell->particles);
-    mf_memory_free(measured->shell);
+    mf_particles_clear(&measured->particles);
     mf_memory_free(measured->order);
     mf_memory_free(measured->parent);
     mf_memory_free(measured->excluded);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file What is measured of the molecules of a trajectory, by the observables of simulations: bond
-/// lengths, angles, dihedrals, sizes. They are given a simulation that holds the beads of a frame,
-/// each molecule whole, in a box without end.
+/// lengths, angles, dihedrals, sizes. The configuration that they are told has the beads of a
+/// frame, each molecule whole, in a box without end.
 #pragma once
 
 #include "measure/molecule_match.h"
@@ -22,9 +22,11 @@ struct measured_molecules {
     struct molecules *molecules; ///< completed; borrowed
     const struct mapping *mapping;
     struct molecule_match match;
-    struct simulation *shell;
-    size_t max_beads;        ///< of a molecule
-    int *order, *parent;     ///< shape [kinds, max_beads]: mf_topology_walk
+    const struct composition *composition; ///< borrowed
+    struct particles particles;            ///< the beads where the mapping has them
+    struct configuration configuration;    ///< of them
+    size_t max_beads;                      ///< of a molecule
+    int *order, *parent;                   ///< shape [kinds, max_beads]: mf_topology_walk
     uint32_t (*excluded)[2]; ///< shape [excluded_count]: pairs of beads, as the mapping has them
     size_t excluded_count;
     struct observable_use use[MEASURED_MOLECULES_MAX + 1]; ///< ended by one without an observable

@@ -83,19 +83,19 @@ static struct bonded_bins choose_bins(const struct molecules *molecules, int ord
 }
 
 static enum status begin(struct bonded_state *s, int order, const struct bonded_settings *settings,
-                         const struct simulation *simulation, const struct measure_plan *plan) {
-    const struct simulation_setup *setup = &simulation->setup;
-    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+                         const struct configuration *configuration,
+                         const struct measure_plan *plan) {
+    const struct molecules *molecules = configuration->molecules;
     if (molecules == NULL || molecules->groups[order] == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the scene has no %s",
                               mf_bonded_distribution_of(order)->name,
                               mf_bonded_kinds[order]->plural);
     *s = (struct bonded_state){
-        .molecules = molecules, .order = order, .dimensions = setup->box.dimensions};
+        .molecules = molecules, .order = order, .dimensions = configuration->dimensions};
     TRY(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     for (int g = 0; g < molecules->groups[order]; g++) {
         s->bins[g] = settings->bins > 0
-                         ? choose_bins(molecules, order, settings->bins, setup->temperature)
+                         ? choose_bins(molecules, order, settings->bins, configuration->temperature)
                          : settings->target[g];
         s->first[g + 1] = s->first[g] + s->bins[g].count;
     }
@@ -178,7 +178,7 @@ void mf_bonded_distribution_count(const struct molecules *molecules, int order, 
     count_group(molecules, order, group, bins, particles, &(struct counting){.all = counts});
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
     struct bonded_state *s = state;
     const int groups = s->molecules->groups[s->order];
     if (mf_sample_blocks_are_full(&s->blocks)) {
@@ -188,7 +188,7 @@ static enum status sample(void *state, struct simulation *simulation) {
     double *counts = s->counts + mf_sample_blocks_take(&s->blocks) * s->first[groups];
     for (int g = 0; g < groups; g++)
         if (s->bins[g].count > 0)
-            count_group(s->molecules, s->order, g, &s->bins[g], &simulation->particles,
+            count_group(s->molecules, s->order, g, &s->bins[g], configuration->particles,
                         &(struct counting){counts + s->first[g], s->of_part + s->first[g], s->parts,
                                            s->first[groups]});
     return STATUS_OK;
@@ -335,9 +335,9 @@ static void explain(const struct simulation_setup *setup, int order, const char 
 
 #define DISTRIBUTION(NAME, term, beads_, key, what, argument_, unit_)                              \
     static enum status term##_begin(void *state, const void *settings,                             \
-                                    const struct simulation *simulation,                           \
+                                    const struct configuration *configuration,                     \
                                     const struct measure_plan *plan) {                             \
-        return begin(state, BONDED_##NAME, settings, simulation, plan);                            \
+        return begin(state, BONDED_##NAME, settings, configuration, plan);                         \
     }                                                                                              \
     static enum status term##_write(const void *state, const struct observable_results *results) { \
         return write_table(state, #key ".tsv", results);                                           \
@@ -358,6 +358,7 @@ static void explain(const struct simulation_setup *setup, int order, const char 
     const struct observable mf_bonded_distribution_##term = {                                      \
         .name = #key,                                                                              \
         .summary = "distribution of the " what " of each group",                                   \
+        .of_places = true,                                                                         \
         .fields = fields,                                                                          \
         .settings_size = sizeof(struct bonded_settings),                                           \
         .state_size = sizeof(struct bonded_state),                                                 \

@@ -71,8 +71,10 @@ enum status mf_caller_observables_check(const struct caller_observables *observa
 
 // Samples -----------------------------------------------------------------------------------------
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     (void)plan;
     *s = (struct state){.own = *(const struct caller_observable *)settings,
@@ -156,7 +158,8 @@ static enum status check_answer(struct state *s, ptrdiff_t answer, uint64_t step
                                 s->own.name, answer, now, s->width);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     double edge[3];
     ptrdiff_t answer;

@@ -73,8 +73,10 @@ static enum status choose(struct state *s, const struct composition *composition
                         : mf_status_fail(STATUS_BAD_INPUT, "clusters.types: no type is named");
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     (void)plan;
     const struct settings *wanted = settings;
@@ -122,7 +124,8 @@ static void join(void *context, const struct neighbours_batch *batch) {
     }
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     double squares = 0, largest = 0;
     for (size_t k = 0; k < s->particles; k++) {

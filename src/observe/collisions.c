@@ -102,8 +102,10 @@ static double mean_speed(const struct hard_gas *gas, const double drift[3]) {
     return sum / gas->count;
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct collisions *c = state;
     const struct event_driven *engine = mf_event_driven_state(simulation);
     OWNED double *radius = NULL, *mass = NULL;
@@ -201,7 +203,8 @@ static double wall_sum(const struct hard_gas *gas, const struct hard_gas_tally *
     return momentum / inverse_length; // NaN without walls
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct collisions *c = state;
     const struct event_driven *engine = mf_event_driven_state(simulation);
     const struct hard_gas *gas = &engine->gas;

@@ -17,8 +17,10 @@ struct state {
     struct sample_series series; ///< of QUANTITIES
 };
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     (void)settings, (void)simulation, (void)plan;
     *(struct state *)state = (struct state){.series.columns = QUANTITIES};
     return STATUS_OK;
@@ -57,7 +59,8 @@ static void add(double here[QUANTITIES], const struct box *box, int walls,
     }
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     double here[QUANTITIES] = {[STEP] = (double)simulation->step};
     const struct particles *particles = &simulation->particles;

@@ -20,8 +20,10 @@ static void clear(void *state) {
     *s = (struct state){0};
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     const struct settings *const set = settings;
     const struct density_profile_plan own = {.composition = simulation->setup.composition,
                                              .bins = (size_t)set->bins,
@@ -35,7 +37,8 @@ static enum status begin(void *state, const void *settings, const struct simulat
     return mf_density_profile_init(&s->profile, &own);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     const struct particles *const particles = &simulation->particles;
     const struct density_profile_plan *const plan = &s->profile.plan;

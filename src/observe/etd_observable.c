@@ -5,8 +5,10 @@
 
 #include <math.h>
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     const struct etd_settings *s = settings;
     return mf_etd_init(state, &s->grid, &s->plan, simulation, plan->equilibration,
                        plan->samples * plan->every);
@@ -20,7 +22,8 @@ static int64_t due(const void *state) {
     return mf_etd_due(state);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     return mf_etd_sample(state, simulation);
 }
 

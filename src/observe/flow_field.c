@@ -47,8 +47,10 @@ static double mass_of(const struct particles *beads) {
     return sum;
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     const struct settings *given = settings;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     struct flow_field *f = state;
@@ -84,7 +86,8 @@ static bool is_in_slice(const struct flow_field *f, double z) {
     return fabs(box_nearest(z - centre, f->box.length[2])) < 0.5 * f->thickness;
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct flow_field *f = state;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     double along = 0;

@@ -70,8 +70,10 @@ static double peak_shape(const struct profile *p) {
                : fabs(p->parameters.wave_acceleration) / (k * k);
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     enum { MIN_BINS = 3 }; // two of a parabola are as fast
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     struct profile *p = state;
@@ -127,7 +129,8 @@ static void follow_beads(struct profile *p, const struct particles *beads, size_
 }
 
 /// Energy relative to the mean velocity of the particles' own bin: flow is no heat.
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct profile *p = state;
     const struct solvent *solvent = mf_collision_dynamics_solvent(simulation);
     const double scale = (double)p->bins / p->height;

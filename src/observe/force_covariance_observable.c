@@ -6,8 +6,10 @@
 
 #include <math.h>
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     return mf_force_covariance_init(state, settings, simulation, (size_t)plan->samples);
 }
 
@@ -15,7 +17,8 @@ static void clear(void *state) {
     mf_force_covariance_clear(state);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     mf_force_covariance_sample(state, simulation);
     return STATUS_OK;
 }

@@ -34,13 +34,15 @@ struct state {
     double *sums;     ///< shape [blocks, pairs]
 };
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     enum status status = STATUS_OK;
     struct state *s = state;
     const struct simulation_setup *setup = &simulation->setup;
     const size_t count = simulation->particles.count;
-    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    const struct molecules *molecules = configuration->molecules;
     status = mf_kirkwood_buff_waves_init(
         &s->waves, &setup->box, &setup->composition, count, molecules ? &molecules->topology : NULL,
         ((const struct kirkwood_buff_settings *)settings)->q_maximum);
@@ -64,7 +66,8 @@ static void clear(void *state) {
     *s = (struct state){0};
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     if (mf_sample_blocks_are_full(&s->blocks)) {
         mf_sample_blocks_join(&s->blocks, s->sums, s->pairs);

@@ -29,8 +29,10 @@ static void clear(void *state) {
     *s = (struct state){0};
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     const struct box *box = &simulation->setup.box;
     (void)plan;
@@ -58,7 +60,8 @@ static enum status begin(void *state, const void *settings, const struct simulat
     return STATUS_OK;
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     const struct particles *particles = &simulation->particles;
     memset(s->members, 0, s->total * sizeof *s->members);

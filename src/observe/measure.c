@@ -144,9 +144,10 @@ static enum status run_moving(struct simulation *simulation, int64_t step,
         if (due > step)
             return STATUS_OK;
         TRY(look(simulation));
+        const struct configuration now = mf_configuration_of(simulation);
         for (const struct observable_use *use = uses; use->observable; use++)
             if (use->observable->due && use->observable->due(use->state) == due)
-                TRY(use->observable->sample(use->state, simulation));
+                TRY(use->observable->sample(use->state, &now));
     }
 }
 
@@ -219,12 +220,13 @@ static enum status take_samples(struct simulation *simulation, const struct meas
         simulation->wants = PAIR_FORCES;
         TRY(run_moving(simulation, due - 1, uses, plan, listener));
         TRY(run_sampled_step(simulation, due, uses, plan, &counted));
+        const struct configuration now = mf_configuration_of(simulation);
         for (const struct observable_use *use = uses; use->observable; use++) {
             const struct observable *observable = use->observable;
             if (use == counted)
-                TRY(observable->counted(use->state, simulation));
+                TRY(observable->counted(use->state, &now));
             else if (observable->due == NULL)
-                TRY(observable->sample(use->state, simulation));
+                TRY(observable->sample(use->state, &now));
         }
         report(listener, simulation, plan);
     }

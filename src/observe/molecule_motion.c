@@ -18,12 +18,14 @@ struct state {
     double together[3];                       ///< centre of mass of all particles [λ]
 };
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     enum status status = STATUS_OK;
     struct state *s = state;
     const struct simulation_setup *setup = &simulation->setup;
-    *s = (struct state){.molecules = mf_molecules_find(setup->interaction, setup->interactions)};
+    *s = (struct state){.molecules = configuration->molecules};
     if (s->molecules == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "molecule_motion: the scene has no molecules");
     const struct topology *topology = &s->molecules->topology;
@@ -87,7 +89,8 @@ static void find_centres(struct state *s, const struct particles *particles,
         }
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     const struct topology *topology = &s->molecules->topology;
     find_together(s, &simulation->particles);

@@ -72,23 +72,22 @@ static double find_gyration(const struct state *s, const struct particles *parti
 
 // Sampling ----------------------------------------------------------------------------------------
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
     struct state *s = state;
-    const struct simulation_setup *setup = &simulation->setup;
-    const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    const struct molecules *molecules = configuration->molecules;
     if (molecules == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "molecule_sizes: the scene has no molecules");
     const struct topology *topology = &molecules->topology;
     const size_t kinds = (size_t)topology->kinds, planned = (size_t)plan->samples;
-    const bool sweeps = setup->integrator && setup->integrator->samples;
     const size_t lags = (size_t)((const struct settings *)settings)->lags;
     *s = (struct state){.molecules = molecules,
                         .lags = planned == 0 || lags < planned ? lags : planned - 1,
                         .every = (size_t)plan->every,
                         .begin = (double)plan->equilibration,
-                        .time_step = sweeps ? 1 : setup->time_step,
-                        .clock = sweeps ? "sweeps[1]" : "time[tau]",
+                        .time_step = configuration->sweeps ? 1 : configuration->time_step,
+                        .clock = configuration->sweeps ? "sweeps[1]" : "time[tau]",
                         .series.columns = NUMBERS * kinds};
     TRY(mf_sample_blocks_init(&s->blocks, planned));
     TRY_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
@@ -163,8 +162,9 @@ static void correlate(struct state *s, size_t sample, size_t block) {
     }
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
     struct state *s = state;
+    const struct particles *const particles = configuration->particles;
     const struct topology *topology = &s->molecules->topology;
     const size_t number = s->blocks.taken;
     double *vectors = vectors_of(s, number), numbers[NUMBERS * TOPOLOGY_MAX_KINDS];
@@ -175,8 +175,8 @@ static enum status sample(void *state, struct simulation *simulation) {
         for (int64_t m = 0; m < kind->count; m++) {
             double *vector = vectors + 3 * (kind->first + m);
             double *part = part_of(s, k, (size_t)m);
-            mf_whole_molecules_make(&s->whole, &simulation->particles, k, m);
-            const double own = find_gyration(s, &simulation->particles, kind, m);
+            mf_whole_molecules_make(&s->whole, particles, k, m);
+            const double own = find_gyration(s, particles, kind, m);
             gyration += own;
             part[GYRATION] += own;
             for (int d = 0; d < 3; d++) {
@@ -387,6 +387,7 @@ static const char *const files[] = {"end_to_end.tsv", "molecule_sizes.tsv", NULL
 
 const struct observable mf_molecule_sizes = {
     .name = "molecule_sizes",
+    .of_places = true,
     .summary = "radius of gyration, end-to-end distance and correlation of its vector",
     .fields = fields,
     .settings_size = sizeof(struct settings),

@@ -8,8 +8,10 @@
 #include "observe/pooled.h"
 #include "observe/shear_viscosity.h"
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     return mf_motion_init(state, settings, simulation, plan->equilibration,
                           plan->samples * plan->every);
 }
@@ -22,7 +24,8 @@ static int64_t due(const void *state) {
     return mf_motion_due(state);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     mf_motion_sample(state, simulation);
     return STATUS_OK;
 }

@@ -45,6 +45,26 @@ const struct observable *const mf_observables[] = {
 _Static_assert(sizeof mf_observables / sizeof *mf_observables <= OBSERVABLES_MAX + 1,
                "OBSERVABLES_MAX");
 
+enum status mf_observable_begin(struct observable_use *use,
+                                const struct configuration *configuration,
+                                const struct measure_plan *plan) {
+    const struct observable *const observable = use->observable;
+    if (configuration->simulation == NULL && !observable->of_places)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: a trajectory does not have what it is of",
+                              observable->name);
+    use->state = mf_memory_zeroed(1, observable->state_size);
+    if (use->state == NULL)
+        return STATUS_NO_MEMORY;
+    return observable->begin(use->state, use->settings, configuration, plan);
+}
+
+void mf_observable_end(struct observable_use *use) {
+    if (use->state)
+        use->observable->clear(use->state);
+    mf_memory_free(use->state);
+    use->state = NULL;
+}
+
 struct observable_kind mf_observable_kind(int kind) {
     if (kind >= OBSERVABLE_TARGETS)
         return (struct observable_kind){0};

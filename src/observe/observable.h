@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The record of an observable, and their list: whatever a simulation measures.
+/// @file The record of an observable, and their list: whatever is measured of configurations, those
+/// of a simulation or, if places are enough, of a trajectory.
 ///
 /// Scene files, restarts, tables, summaries, `--explain`, `mesofit describe` and figures know an
 /// observable by its record alone. What a record does not need is left out (NULL): the least is a
@@ -9,11 +10,11 @@
 
 #include "base/fields.h"
 #include "base/memory.h"
-#include "dynamics/simulation.h"
 #include "io/data_table.h"
 #include "io/json_write.h"
 #include "io/output.h"
 #include "io/units.h"
+#include "observe/configuration.h"
 #include "observe/stages.h"
 
 struct measure_plan;
@@ -24,8 +25,9 @@ struct observable_use;
 /// The script that draws all columns of the first file but errors, and what ends with _boltzmann.
 #define OBSERVABLE_FIGURE_OF_GROUPS "groups"
 
-/// Observables in the list, targets of all of them, and spans of one, at most. What is more is found
-/// when the list is compiled and by test_observable; a target beyond them is not known to run files.
+/// Observables in the list, targets of all of them, and spans of one, at most. What is more is
+/// found when the list is compiled and by test_observable; a target beyond them is not known to run
+/// files.
 enum { OBSERVABLES_MAX = 32, OBSERVABLE_TARGETS = 32, OBSERVABLE_MAX_SPANS = 80 };
 
 /// Where and of what results are written.
@@ -68,13 +70,15 @@ struct observable {
     bool always;         ///< measured by `mesofit simulate` even if the scene does not name it
     bool of_time;        ///< follows particles through time, or is about velocities
     bool of_solvent;     ///< of an integrator's own particles: the scene may have none
+    bool of_places;      ///< asks for nothing that a trajectory has not (observe/configuration.h)
 
     const struct field *fields; ///< of the settings
     size_t settings_size, state_size;
 
-    /// Prepare a zeroed state for the samples of a plan. Fails: BAD_INPUT, NO_MEMORY; the state is
-    /// then cleared as after a success.
-    enum status (*begin)(void *state, const void *settings, const struct simulation *simulation,
+    /// Prepare a zeroed state for the samples of a plan; without a number of samples for as many as
+    /// there will be. Fails: BAD_INPUT, NO_MEMORY; the state is then cleared as after a success.
+    enum status (*begin)(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan);
     void (*clear)(void *state);
 
@@ -86,14 +90,14 @@ struct observable {
     /// What the force pass of a sampled step is to count, or NULL if it cannot; `counted` then
     /// stands for `sample`. One observable at a time is served so, the others sample.
     const struct pair_histogram *(*histogram)(void *state);
-    enum status (*counted)(void *state, struct simulation *simulation);
+    enum status (*counted)(void *state, const struct configuration *configuration);
     /// What all steps from the first sample on are to add their momentum transfer to, or NULL if it
     /// wants none. One observable is served so.
     struct transfer *(*transfer)(void *state);
     /// The step of its next sample, INT64_MAX after the last. Without it samples are the plan's.
     int64_t (*due)(const void *state);
     /// Add the present configuration, with the forces of its step. Fails: NO_MEMORY.
-    enum status (*sample)(void *state, struct simulation *simulation);
+    enum status (*sample)(void *state, const struct configuration *configuration);
 
     /// What goes with a checkpoint, at most OBSERVABLE_MAX_SPANS; returns their number.
     size_t (*spans)(void *state, struct memory_span *spans);
@@ -139,6 +143,15 @@ struct observable_use {
     const struct observable *observable;
     void *state, *settings;
 };
+
+/// Make the state of an observable and begin; a failure leaves it to be ended, too. Fails: as
+/// begin; BAD_INPUT for a trajectory where the observable asks for more than places.
+enum status mf_observable_begin(struct observable_use *use,
+                                const struct configuration *configuration,
+                                const struct measure_plan *plan) MUST_USE;
+
+/// Clear the state and free it, if there is one. The settings stay.
+void mf_observable_end(struct observable_use *use);
 
 /// A target, by its number below OBSERVABLE_TARGETS among those of the whole list.
 struct observable_kind {

@@ -18,8 +18,10 @@ static bool is_noninteracting(const struct simulation_setup *setup) {
     return noninteracting;
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct polarity *polarity = state;
     const int64_t steps = plan->samples * plan->every;
     if (mf_orientation_of(&simulation->particles).angle == NULL)
@@ -55,7 +57,8 @@ static double find_order(const struct motion *motion) {
     return hypot(sum[0], sum[1]) / (double)motion->count;
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct polarity *polarity = state;
     mf_motion_sample(&polarity->motion, simulation);
     const double order = find_order(&polarity->motion);

@@ -64,8 +64,10 @@ static bool uses_force(const struct rdf_settings *settings, const struct simulat
            mf_rdf_force_applies(setup->potential, setup->temperature);
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     const struct simulation_setup *setup = &simulation->setup;
     const struct rdf_settings *s = settings;
     struct rdf_observed *observed = state;
@@ -85,14 +87,15 @@ static enum status begin(void *state, const void *settings, const struct simulat
 
 /// Of beads of different molecules, and of single ones.
 static enum status begin_intermolecular(void *state, const void *settings,
-                                        const struct simulation *simulation,
+                                        const struct configuration *configuration,
                                         const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct rdf_observed *observed = state;
     struct rdf_settings counted = *(const struct rdf_settings *)settings;
     counted.estimator = RDF_FORCE_NOT_USED;
     if (simulation->particles.topology == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "intermolecular_rdf: the scene has no molecules");
-    TRY(begin(state, &counted, simulation, plan));
+    TRY(begin(state, &counted, configuration, plan));
     observed->counted.intermolecular = simulation->particles.topology;
     return STATUS_OK;
 }
@@ -114,13 +117,15 @@ static enum status sample_force(struct rdf_observed *observed, struct simulation
     return mf_rdf_force_sample(&observed->force, &simulation->particles, &simulation->neighbours);
 }
 
-static enum status counted(void *state, struct simulation *simulation) {
+static enum status counted(void *state, const struct configuration *configuration) {
+    struct simulation *const simulation = configuration->simulation;
     struct rdf_observed *observed = state;
     mf_rdf_sample_counted(&observed->counted);
     return sample_force(observed, simulation);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    struct simulation *const simulation = configuration->simulation;
     struct rdf_observed *observed = state;
     if (observed->counted.planned > 0)
         TRY(mf_rdf_sample(&observed->counted, &simulation->particles, &simulation->neighbours));

@@ -90,8 +90,10 @@ static double mass_of(const struct particles *particles) {
     return sum;
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct viscosity *v = state;
     const struct simulation_setup *setup = &simulation->setup;
     const struct shear_wave_parameters *wave =
@@ -154,7 +156,8 @@ static void sample_wave(struct viscosity *v, const struct particles *particles) 
     v->velocity[v->samples / v->each] += 2 * sum / v->count;
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct viscosity *v = state;
     v->heat += mf_particles_temperature(&simulation->particles);
     if (v->driven)

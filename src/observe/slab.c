@@ -77,8 +77,10 @@ static enum status check_stress(const struct simulation *simulation) {
     return status == STATUS_BAD_INPUT ? mf_status_prefix(status, "slab") : status;
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     const struct composition *composition = &simulation->setup.composition;
     const bool mixed = composition_is_mixed(composition);
@@ -138,7 +140,8 @@ static enum status add_stress(struct state *s, const struct simulation *simulati
     return mf_sample_series_add(&s->series, numbers);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     if (mf_sample_blocks_are_full(&s->blocks)) {
         mf_sample_blocks_join(&s->blocks, s->sums, s->row);

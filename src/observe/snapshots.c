@@ -49,8 +49,10 @@ static enum status take(struct state *s, const struct simulation *simulation) {
     return status;
 }
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     *s = (struct state){.settings = *(const struct settings *)settings,
                         .begin = plan->equilibration,
@@ -155,7 +157,8 @@ static enum status write(const void *state, const struct observable_results *res
                                   columns, n, snapshot->own);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     TRY(take(s, simulation));
     TRY(write_formats(s));

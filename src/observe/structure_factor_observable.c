@@ -34,8 +34,10 @@ struct state {
     double *numbers; ///< of one sample
 };
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     enum status status = STATUS_OK;
     struct state *s = state;
     const struct settings *const wish = settings;
@@ -57,7 +59,8 @@ static void clear(void *state) {
     *s = (struct state){0};
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     mf_particle_waves_find(&s->waves, &simulation->particles, simulation->setup.threads);
     mf_structure_factor_take(&s->waves.waves, s->numbers);

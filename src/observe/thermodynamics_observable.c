@@ -9,8 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     (void)settings, (void)simulation, (void)plan;
     mf_thermodynamics_init(state);
     return STATUS_OK;
@@ -20,7 +22,8 @@ static void clear(void *state) {
     mf_thermodynamics_clear(state);
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     return mf_thermodynamics_sample(state, simulation);
 }
 

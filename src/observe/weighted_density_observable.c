@@ -12,8 +12,10 @@ struct state {
     struct density_list list;
 };
 
-static enum status begin(void *state, const void *settings, const struct simulation *simulation,
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
                          const struct measure_plan *plan) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     const struct weighted_density_settings *const wish = settings;
     const struct box *const box = &simulation->setup.box;
@@ -29,7 +31,8 @@ static void clear(void *state) {
     *s = (struct state){0};
 }
 
-static enum status sample(void *state, struct simulation *simulation) {
+static enum status sample(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
     TRY(mf_density_list_find(&s->list, &simulation->particles));
     return mf_weighted_density_add(&s->density, s->list.values, simulation->particles.count);

@@ -78,9 +78,7 @@ enum status mf_measurement_list(const struct measurement_setup *setup, double ti
 
 void mf_measurement_list_clear(struct observable_use *uses) {
     for (; uses->observable; uses++) {
-        if (uses->state)
-            uses->observable->clear(uses->state);
-        mf_memory_free(uses->state);
+        mf_observable_end(uses);
         mf_memory_free(uses->settings);
         *uses = (struct observable_use){0};
     }
@@ -108,14 +106,10 @@ int64_t mf_measurement_window(const struct targets *targets, double time_step,
 // Measuring it ------------------------------------------------------------------------------------
 
 static enum status begin(struct measurement *measurement, const struct measurement_setup *setup) {
-    const struct simulation *simulation = &measurement->simulation;
-    TRY(mf_measurement_list(setup, simulation->setup.time_step, measurement->use));
-    for (struct observable_use *use = measurement->use; use->observable; use++) {
-        use->state = mf_memory_zeroed(1, use->observable->state_size);
-        if (use->state == NULL)
-            return STATUS_NO_MEMORY;
-        TRY(use->observable->begin(use->state, use->settings, simulation, &setup->plan));
-    }
+    const struct configuration first = mf_configuration_of(&measurement->simulation);
+    TRY(mf_measurement_list(setup, first.time_step, measurement->use));
+    for (struct observable_use *use = measurement->use; use->observable; use++)
+        TRY(mf_observable_begin(use, &first, &setup->plan));
     return STATUS_OK;
 }
 

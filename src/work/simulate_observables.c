@@ -90,9 +90,7 @@ void mf_simulate_observables_digest(const struct simulate_observables *observabl
 
 void mf_simulate_observables_clear(struct simulate_observables *observables) {
     for (struct observable_use *use = observables->use; use->observable; use++) {
-        if (use->state)
-            use->observable->clear(use->state);
-        mf_memory_free(use->state);
+        mf_observable_end(use);
         mf_memory_free(use->settings);
     }
     *observables = (struct simulate_observables){0};
@@ -110,25 +108,19 @@ void mf_simulate_observables_write_used(const struct simulate_observables *obser
 }
 
 enum status mf_simulate_observables_begin(struct simulate_observables *observables,
-                                          const struct simulation *simulation,
+                                          struct simulation *simulation,
                                           const struct measure_plan *plan) {
-    for (struct observable_use *use = observables->use; use->observable; use++) {
-        use->state = mf_memory_zeroed(1, use->observable->state_size);
-        if (use->state == NULL)
-            return STATUS_NO_MEMORY;
-        TRY(use->observable->begin(use->state, use->settings, simulation, plan));
-    }
+    const struct configuration configuration = mf_configuration_of(simulation);
+    for (struct observable_use *use = observables->use; use->observable; use++)
+        TRY(mf_observable_begin(use, &configuration, plan));
     return STATUS_OK;
 }
 
 enum status mf_simulate_observables_restart(struct simulate_observables *observables,
-                                            const struct simulation *simulation,
+                                            struct simulation *simulation,
                                             const struct measure_plan *plan) {
-    for (struct observable_use *use = observables->use; use->observable; use++) {
-        use->observable->clear(use->state);
-        mf_memory_free(use->state);
-        use->state = NULL;
-    }
+    for (struct observable_use *use = observables->use; use->observable; use++)
+        mf_observable_end(use);
     return mf_simulate_observables_begin(observables, simulation, plan);
 }
 

@@ -33,12 +33,12 @@ void mf_simulate_observables_write_used(const struct simulate_observables *obser
 
 /// Fails: as the records' `begin`.
 enum status mf_simulate_observables_begin(struct simulate_observables *observables,
-                                          const struct simulation *simulation,
+                                          struct simulation *simulation,
                                           const struct measure_plan *plan) MUST_USE;
 
 /// Forget all that was measured, and begin once more.
 enum status mf_simulate_observables_restart(struct simulate_observables *observables,
-                                            const struct simulation *simulation,
+                                            struct simulation *simulation,
                                             const struct measure_plan *plan) MUST_USE;
 
 /// Tell those that write while they measure where their files go.

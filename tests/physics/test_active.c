@@ -10,6 +10,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 #include "shared/watched.h"
 
 #include <math.h>
@@ -98,7 +99,7 @@ static void test_fit_of_the_msd_finds_its_numbers(void **state) {
     struct polarity polarity = {0};
     make_free(&fluid, 1000, 0.01, &mf_brownian, &parameters);
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(mf_polarity_observable.begin(&polarity, &window, &simulation, &plan));
+    assert_ok(told_begin(&mf_polarity_observable, &polarity, &window, &simulation, &plan));
     assert_true(polarity.noninteracting);
     const struct observable_use uses[] = {{&mf_polarity_observable, &polarity, NULL}, {0}};
     assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));
@@ -171,7 +172,7 @@ static void test_order_is_that_of_chance_without_alignment_and_high_with_it(void
         fluid.setup.interaction[1] = (struct interaction_choice){&mf_polar_alignment, &alignment};
         fluid.setup.interactions = 1 + aligned;
         assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
-        assert_ok(mf_polarity_observable.begin(&polarity, &window, &simulation, &plan));
+        assert_ok(told_begin(&mf_polarity_observable, &polarity, &window, &simulation, &plan));
         const struct observable_use uses[] = {{&mf_polarity_observable, &polarity, NULL}, {0}};
         assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
         assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));

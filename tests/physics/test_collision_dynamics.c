@@ -11,6 +11,7 @@
 #include "shared/is_close.h"
 #include "shared/length.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,7 +41,7 @@ static struct flow_profile_summary measure(const struct simulation_setup *setup,
     double temperature;
     assert_non_null(state);
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_flow_profile.begin(state, &settings, &simulation, &plan));
+    assert_ok(told_begin(&mf_flow_profile, state, &settings, &simulation, &plan));
     const struct observable_use uses[] = {{.observable = &mf_flow_profile, .state = state}, {0}};
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));

@@ -6,6 +6,7 @@
 #include "observe/measure.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -44,7 +45,7 @@ static void test_drag_on_an_array_of_discs_is_that_of_slow_flow(void **state) {
     void *flow = calloc(1, mf_flow_field.state_size);
     assert_non_null(flow);
     assert_ok(mf_simulation_init(&simulation, &setup, NULL));
-    assert_ok(mf_flow_field.begin(flow, &settings, &simulation, &plan));
+    assert_ok(told_begin(&mf_flow_field, flow, &settings, &simulation, &plan));
     const struct observable_use uses[] = {{.observable = &mf_flow_field, .state = flow}, {0}};
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));

@@ -10,6 +10,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 
@@ -30,7 +31,7 @@ static void measure(const struct simulation_setup *setup, double *value, double 
     double temperature;
     uses[0].state = mf_memory_zeroed(1, observable->state_size);
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(observable->begin(uses[0].state, &settings, &simulation, &plan));
+    assert_ok(told_begin(observable, uses[0].state, &settings, &simulation, &plan));
     assert_ok(mf_measure_equilibrate(&simulation, &plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, &plan, uses, NULL));
     assert_ok(mf_pooled_result(observable, (const void *const[]){uses[0].state}, 1, &values));

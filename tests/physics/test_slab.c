@@ -8,6 +8,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 
@@ -26,7 +27,7 @@ static void measure(const struct simulation_setup *setup, const struct measure_p
         values[n] = (struct observable_values){.count = 1, .value = &value[n], .error = &error[n]};
     uses[0].state = mf_memory_zeroed(1, mf_slab.state_size);
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_slab.begin(uses[0].state, &settings, &simulation, plan));
+    assert_ok(told_begin(&mf_slab, uses[0].state, &settings, &simulation, plan));
     assert_ok(mf_measure_equilibrate(&simulation, plan, &temperature, NULL));
     assert_ok(mf_measure_sample(&simulation, plan, uses, NULL));
     assert_ok(mf_pooled_result(&mf_slab, (const void *const[]){uses[0].state}, 1, values));
@@ -98,9 +99,9 @@ static void find_shifted(double shift, double value[TARGETS]) {
     fluid.setup.placement.kind = PLACEMENT_RANDOM; // the planes of a lattice would be slabs
     fluid.setup.placement.slab = 0.47;
     assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
-    assert_ok(mf_slab.begin(state, &settings, &simulation, &plan));
+    assert_ok(told_begin(&mf_slab, state, &settings, &simulation, &plan));
     for (int k = 0; k < SAMPLES; k++) {
-        assert_ok(mf_slab.sample(state, &simulation));
+        assert_ok(told_sample(&mf_slab, state, &simulation));
         for (size_t n = 0; n < simulation.particles.count; n++)
             simulation.particles.position[2][n] += shift;
         assert_true(mf_particles_wrap(&simulation.particles));

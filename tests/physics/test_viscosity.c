@@ -10,6 +10,7 @@
 #include "shared/length.h"
 #include "shared/remembering.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 #include "shared/watched.h"
 
 #include <math.h>
@@ -26,7 +27,7 @@ measure(struct simulation *simulation, const struct measure_plan *plan, struct s
     double temperature;
     void *state = calloc(1, mf_shear_viscosity.state_size);
     assert_non_null(state);
-    assert_ok(mf_shear_viscosity.begin(state, &settings, simulation, plan));
+    assert_ok(told_begin(&mf_shear_viscosity, state, &settings, simulation, plan));
     const struct observable_use uses[] = {{.observable = &mf_shear_viscosity, .state = state}, {0}};
     assert_ok(mf_measure_equilibrate(simulation, plan, &temperature, NULL));
     assert_ok(mf_measure_sample(simulation, plan, uses, NULL));

@@ -9,6 +9,7 @@
 #include "shared/is_close.h"
 #include "shared/molecules.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,7 +77,7 @@ static void sample_jumps(struct chains *chains, const struct observable *observa
             up[m] = sample == 0 ? number < 0.5 : up[m] ^ (number < jump);
             turn(chains, m, up[m]);
         }
-        assert_ok(observable->sample(state, &chains->simulation));
+        assert_ok(told_sample(observable, state, &chains->simulation));
     }
 }
 
@@ -122,7 +123,8 @@ static void check(struct chains *chains, double jump, bool together) {
         double squares = 0;
         for (uint64_t run = 1; run <= RUNS; run++) {
             void *state = calloc(1, observable->state_size);
-            assert_ok(observable->begin(state, measured[k].settings, &chains->simulation, &plan));
+            assert_ok(
+                told_begin(observable, state, measured[k].settings, &chains->simulation, &plan));
             sample_jumps(chains, observable, state, run, jump, together);
             squares += pow(measured[k].deviation(state), 2) / RUNS;
             observable->clear(state);

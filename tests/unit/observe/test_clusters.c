@@ -7,6 +7,7 @@
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 
@@ -43,8 +44,8 @@ static void take(const struct observable *observable, const void *settings,
     assert_true(observable->state_size <= sizeof state);
     make(&fluid, &simulation);
     simulation.setup.composition = mixture;
-    assert_ok(observable->begin(state, settings, &simulation, &plan));
-    assert_ok(observable->sample(state, &simulation));
+    assert_ok(told_begin(observable, state, settings, &simulation, &plan));
+    assert_ok(told_sample(observable, state, &simulation));
     const struct observable_results results = {.folder = folder};
     assert_ok(observable->write(state, &results));
     mf_observable_file(&results, observable->files[0], path);
@@ -95,7 +96,8 @@ static void test_clusters_refuse_a_type_that_is_none(void **state) {
     simulation.setup.composition = mixture;
     for (int n = 0; n < 2; n++) {
         double own[64] = {0};
-        assert_fails(mf_clusters.begin(own, &settings[n], &simulation, &plan), STATUS_BAD_INPUT,
+        assert_fails(told_begin(&mf_clusters, own, &settings[n], &simulation, &plan),
+                     STATUS_BAD_INPUT,
                      n == 0 ? "clusters.types: \"C\" is no type" : "clusters.types: no type");
         mf_clusters.clear(own);
     }
@@ -110,7 +112,7 @@ static void test_clusters_refuse_a_distance_beyond_the_list(void **state) {
     struct simulation simulation;
     double own[64] = {0};
     make(&fluid, &simulation);
-    assert_fails(mf_clusters.begin(own, &settings, &simulation, &plan), STATUS_BAD_INPUT,
+    assert_fails(told_begin(&mf_clusters, own, &settings, &simulation, &plan), STATUS_BAD_INPUT,
                  "clusters.distance: 1.2 is beyond 1");
     mf_clusters.clear(own);
     mf_simulation_clear(&simulation);

@@ -7,6 +7,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <string.h>
 
@@ -59,10 +60,10 @@ struct seen {
     double energy[64];
 };
 
-static enum status see(void *state, struct simulation *simulation) {
+static enum status see(void *state, const struct configuration *configuration) {
     struct seen *seen = state;
-    seen->step[seen->count] = (int64_t)simulation->step;
-    seen->energy[seen->count++] = simulation->sums.energy;
+    seen->step[seen->count] = (int64_t)configuration->simulation->step;
+    seen->energy[seen->count++] = configuration->simulation->sums.energy;
     seen->next += OWN_EVERY;
     return STATUS_OK;
 }
@@ -117,8 +118,8 @@ static void test_two_histograms_of_a_step_are_the_same(void **state) {
     struct rdf_observed first = {0}, second = {0};
     const struct rdf_settings settings = {.bins = 30};
     begin(&fluid, &simulation);
-    assert_ok(mf_rdf_observable.begin(&first, &settings, &simulation, &plan));
-    assert_ok(mf_rdf_observable.begin(&second, &settings, &simulation, &plan));
+    assert_ok(told_begin(&mf_rdf_observable, &first, &settings, &simulation, &plan));
+    assert_ok(told_begin(&mf_rdf_observable, &second, &settings, &simulation, &plan));
     measure(&simulation, (const struct observable_use[]){{&mf_rdf_observable, &first, NULL},
                                                          {&mf_rdf_observable, &second, NULL},
                                                          {NULL, NULL, NULL}});

@@ -8,6 +8,7 @@
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -57,12 +58,12 @@ static void still_init(struct still *still, struct temporary_folder *folder, con
 }
 
 static enum status still_begin(struct still *still) {
-    return still->use.observable->begin(still->use.state, still->use.settings, &still->simulation,
-                                        &still->plan);
+    return told_begin(still->use.observable, still->use.state, still->use.settings,
+                      &still->simulation, &still->plan);
 }
 
 static void still_sample(struct still *still) {
-    assert_ok(still->use.observable->sample(still->use.state, &still->simulation));
+    assert_ok(told_sample(still->use.observable, still->use.state, &still->simulation));
 }
 
 static void still_clear(struct still *still) {

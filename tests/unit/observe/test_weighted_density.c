@@ -9,6 +9,7 @@
 #include "shared/fluids.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
+#include "shared/told.h"
 
 #include <math.h>
 
@@ -37,8 +38,8 @@ static struct weighted_density_summary sample(const struct simulation_setup *set
     const struct measure_plan plan = {.samples = 1, .every = 1};
     void *const state = mf_memory_zeroed(1, mf_weighted_density.state_size);
     assert_ok(mf_simulation_init(&simulation, setup, NULL));
-    assert_ok(mf_weighted_density.begin(state, settings, &simulation, &plan));
-    assert_ok(mf_weighted_density.sample(state, &simulation));
+    assert_ok(told_begin(&mf_weighted_density, state, settings, &simulation, &plan));
+    assert_ok(told_sample(&mf_weighted_density, state, &simulation));
     const struct weighted_density_summary found = mf_weighted_density_result(state);
     mf_weighted_density.clear(state);
     mf_memory_free(state);

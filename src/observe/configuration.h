@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file A configuration: what observables are told, whoever made it.
+///
+/// Its source is a simulation of ours, which has all that observables ask for, or a trajectory, of
+/// which there are no more than places, in a box of any shape, and what files tell of molecules,
+/// masses and times. What a source has not is NULL or NAN. An observable that goes by what all
+/// sources have is `of_places` (observe/observable.h).
+#pragma once
+
+#include "dynamics/simulation.h"
+#include "forces/molecules.h"
+
+struct configuration {
+    struct simulation *simulation; ///< whose it is; NULL: of a trajectory
+    int dimensions;
+    const struct composition *composition; ///< types of the beads by their ids
+    const struct molecules *molecules;     ///< that the beads are, or NULL
+    double temperature;                    ///< of noise and moves [k_B T_0]; 0: not known
+    double time_step; ///< between the steps that plans count [τ]; NAN: unknown
+    bool sweeps;      ///< these steps are sweeps of Monte Carlo: there is no time
+    /// The beads: ids, places, masses. Those of molecules of a trajectory are made whole, in a box
+    /// without end; NULL: the trajectory tells of no molecules.
+    const struct particles *particles;
+};
+
+/// What a simulation holds now, until it goes on. Tested: test_configuration.
+struct configuration mf_configuration_of(struct simulation *simulation);

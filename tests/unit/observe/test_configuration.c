@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Observables are told what a simulation holds, and of a trajectory what they ask for, or are not
+// begun.
+#include "observe/measure.h"
+#include "shared/fluids.h"
+#include "shared/testing.h"
+
+static const struct measure_plan plan = {.samples = 10, .every = 5};
+
+static void test_configuration_is_what_a_simulation_holds(void **state) {
+    (void)state;
+    struct fluid fluid;
+    struct simulation simulation;
+    fluid_groot_warren(&fluid, 200, 0.02);
+    assert_ok(mf_simulation_init(&simulation, &fluid.setup, NULL));
+    const struct configuration now = mf_configuration_of(&simulation);
+    assert_ptr_equal(now.simulation, &simulation);
+    assert_ptr_equal(now.particles, &simulation.particles);
+    assert_ptr_equal(now.composition, &simulation.setup.composition);
+    assert_null(now.molecules);
+    assert_int_equal(now.dimensions, 3);
+    assert_true(now.time_step == fluid.setup.time_step && !now.sweeps);
+    assert_true(now.temperature == fluid.setup.temperature);
+    mf_simulation_clear(&simulation);
+    fluid_clear(&fluid);
+}
+
+/// Nothing of them is called: what a trajectory has not would be read.
+static void test_configuration_of_a_trajectory_is_refused_by_who_asks_for_more(void **state) {
+    (void)state;
+    const struct configuration frame = {.dimensions = 3};
+    size_t refused = 0;
+    for (size_t k = 0; mf_observables[k]; k++) {
+        struct observable_use use = {.observable = mf_observables[k]};
+        if (mf_observables[k]->of_places)
+            continue;
+        assert_fails(mf_observable_begin(&use, &frame, &plan), STATUS_BAD_INPUT,
+                     mf_observables[k]->name);
+        assert_null(use.state);
+        refused++;
+    }
+    assert_true(refused > 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_configuration_is_what_a_simulation_holds),
+        cmocka_unit_test(test_configuration_of_a_trajectory_is_refused_by_who_asks_for_more),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
