@@ -115,12 +115,12 @@ static enum status read_profile(const struct command_line *line, struct measured
         return mf_status_fail(STATUS_BAD_INPUT, "--profile-bins is for --density-profile x|y|z");
     for (int k = 0; axis && mf_density_profile_axes[k]; k++)
         if (strcmp(axis, mf_density_profile_axes[k]) == 0) {
-            plan->profile_axis = k;
-            plan->profile_bins = USUAL_BINS;
+            plan->profile.axis = k;
+            plan->profile.bins = USUAL_BINS;
         }
-    if (axis && plan->profile_bins == 0)
+    if (axis && plan->profile.bins == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "--density-profile takes x, y or z");
-    return read_count(line, PROFILE_BINS, &plan->profile_bins);
+    return read_count(line, PROFILE_BINS, &plan->profile.bins);
 }
 
 /// "R0,RC", the first below the second, or "R0,RC,END" with the end of the bins.
@@ -163,10 +163,10 @@ static enum status read_request(const struct command_line *line, struct measure_
     TRY(read_number(line, ESCAPE, above_zero, &request->measured.motion.escape));
     TRY(read_number(line, TEMPERATURE, above_zero, &request->temperature));
     TRY(read_number(line, FILE_TIME_STEP, above_zero, &frames->options.time_step));
-    TRY(read_number(line, Q_RANGE, 0, &request->measured.q_maximum));
+    TRY(read_number(line, Q_RANGE, 0, &request->measured.waves.q_maximum));
     TRY(read_count(line, BINS, &request->measured.bins));
     TRY(read_weighted(line, &request->measured.weighted));
-    TRY(read_count(line, WAVES, &request->measured.waves));
+    TRY(read_count(line, WAVES, &request->measured.waves.waves));
     TRY(read_profile(line, &request->measured));
     TRY(read_choice(line, VELOCITIES, mf_measured_velocities,
                     &request->measured.motion.velocities));
@@ -190,7 +190,7 @@ static enum status run(const struct command_line *line) {
                    .threads = line->options.threads},
         .measured = {.motion = {.leave_out = line->own[STATIC] != NULL,
                                 .threads = line->options.threads},
-                     .q_maximum = NAN,
+                     .waves = {.q_maximum = NAN},
                      .threads = line->options.threads},
         .temperature = NAN,
         .system = UNITS_NM_PS,

@@ -20,8 +20,8 @@ static void find_edges(const double vector[3][3], double edge[3][3]) {
         }
 }
 
-enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_frame *frame) {
-    *box = (struct frame_box){.volume = 1};
+enum status mf_frame_box_find(struct box_vectors *box, const struct trajectory_frame *frame) {
+    *box = (struct box_vectors){.volume = 1};
     if (!frame->has_box)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu has no box: g(r) needs the volume and its images; "
@@ -44,14 +44,10 @@ enum status mf_frame_box_find(struct frame_box *box, const struct trajectory_fra
     return STATUS_OK;
 }
 
-double mf_frame_box_min_height(const struct frame_box *box) {
-    return fmin(box->height[0], fmin(box->height[1], box->height[2]));
-}
-
-enum status mf_frame_box_check_range(const struct frame_box *box,
+enum status mf_frame_box_check_range(const struct box_vectors *box,
                                      const struct trajectory_frame *frame, double range,
                                      const char *what) {
-    const double half = 0.5 * mf_frame_box_min_height(box);
+    const double half = 0.5 * mf_box_vectors_min_height(box);
     if (range <= half)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
@@ -63,7 +59,7 @@ enum status mf_frame_box_check_range(const struct frame_box *box,
 /// Boxes beyond which a fraction is none (box_fraction): no digit of the place in a box is left.
 static const double max_boxes = 0x1p19;
 
-enum status mf_frame_box_places(const struct frame_box *box, const struct trajectory_frame *frame,
+enum status mf_frame_box_places(const struct box_vectors *box, const struct trajectory_frame *frame,
                                 int32_t *const place[3]) {
     for (int i = 0; i < 3; i++)
         for (size_t k = 0; k < frame->atoms; k++) {

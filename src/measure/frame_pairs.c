@@ -48,7 +48,7 @@ static enum status reserve(struct frame_pairs *pairs, const struct frame_pairs_p
 /// their cells along it are at most ⌈cells range/height⌉ apart: two, or three by rounding. Where
 /// the range is near half the box, the search becomes that of all pairs.
 static void choose_cells(struct frame_pairs *pairs, size_t beads, double range,
-                         const struct frame_box *box, int count[3]) {
+                         const struct box_vectors *box, int count[3]) {
     const double max = fmax(1, floor(cbrt((double)beads)));
     for (int i = 0; i < 3; i++) {
         const double share = range / box->height[i];
@@ -69,7 +69,7 @@ static void find_cells(struct cells *cells, int32_t *const place[3]) {
 
 /// Sort the beads and their attributes.
 static enum status sort(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                        double range, const struct frame_box *box, int32_t *const place[3]) {
+                        double range, const struct box_vectors *box, int32_t *const place[3]) {
     const size_t beads = find_beads(plan);
     int count[3];
     TRY(reserve(pairs, plan));
@@ -137,7 +137,7 @@ struct work {
 };
 
 static struct work make_work(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                             double range, const struct frame_box *box) {
+                             double range, const struct box_vectors *box) {
     struct work work = {pairs, plan, .limit = range * range};
     work.probe.bins = (double)plan->bins;
     work.probe.per_length = (double)plan->bins / range;
@@ -210,7 +210,7 @@ static void count_row(void *context, size_t i, struct cells_row row) {
 }
 
 enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                                 const struct frame_box *box, int32_t *const place[3]) {
+                                 const struct box_vectors *box, int32_t *const place[3]) {
     TRY(sort(pairs, plan, plan->range, box, place));
     struct work work = make_work(pairs, plan, plan->range, box);
     const struct cells_visitor visitor = {count_row, &work};
@@ -222,7 +222,7 @@ enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_p
 }
 
 void mf_frame_pairs_exclude(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                            const struct frame_box *box, int32_t *const place[3],
+                            const struct box_vectors *box, int32_t *const place[3],
                             uint32_t (*excluded)[2], size_t count) {
     const struct composition *composition = &plan->composition;
     struct work work = make_work(pairs, plan, plan->range, box);
@@ -291,7 +291,7 @@ static void keep_row(void *context, size_t i, struct cells_row row) {
 }
 
 enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                                double range, const struct frame_box *box,
+                                double range, const struct box_vectors *box,
                                 int32_t *const place[3]) {
     TRY(sort(pairs, plan, range, box, place));
     struct work work = make_work(pairs, plan, range, box);
@@ -331,7 +331,7 @@ static void weigh_row(void *context, size_t i, struct cells_row row) {
 
 enum status mf_frame_pairs_weigh(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                                  const struct weighted_density_settings *settings,
-                                 const struct frame_box *box, int32_t *const place[3],
+                                 const struct box_vectors *box, int32_t *const place[3],
                                  uint32_t (*excluded)[2], size_t count, double *density) {
     TRY(sort(pairs, plan, settings->cutoff, box, place));
     struct weighing w = {make_work(pairs, plan, settings->cutoff, box), settings, density};

@@ -37,19 +37,19 @@ void mf_frame_pairs_clear(struct frame_pairs *pairs);
 /// The range is at most half the least height (mf_frame_box_check_range). Fails: NO_MEMORY.
 /// Threads: one a struct frame_pairs. Tested: test_frame_pairs, against all images.
 enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                                 const struct frame_box *box, int32_t *const place[3]) MUST_USE;
+                                 const struct box_vectors *box, int32_t *const place[3]) MUST_USE;
 
 /// Take pairs off those within molecules that were counted, and add to these the others: then
 /// pairs->within has all pairs but those. Tested: cli/test_measure_molecules.
 /// @param[in] excluded  shape [count, 2]: beads
 void mf_frame_pairs_exclude(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                            const struct frame_box *box, int32_t *const place[3],
+                            const struct box_vectors *box, int32_t *const place[3],
                             uint32_t (*excluded)[2], size_t count);
 
 /// Find the pairs nearer than `range`, of whatever types, into pairs->first and
 /// second. Fails: NO_MEMORY.
 enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                                double range, const struct frame_box *box,
+                                double range, const struct box_vectors *box,
                                 int32_t *const place[3]) MUST_USE;
 
 /// Find the weighted density around each bead, of the pairs that are counted as those of different
@@ -58,7 +58,7 @@ enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pa
 /// Fails: NO_MEMORY. Tested: test_measured.
 enum status mf_frame_pairs_weigh(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
                                  const struct weighted_density_settings *settings,
-                                 const struct frame_box *box, int32_t *const place[3],
+                                 const struct box_vectors *box, int32_t *const place[3],
                                  uint32_t (*excluded)[2], size_t count, double *density) MUST_USE;
 
 /// How many pairs of each pair type there are to be counted: all but those of one molecule.

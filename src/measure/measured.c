@@ -96,11 +96,11 @@ static enum status find_shares(struct measured *measured) {
 }
 
 /// What is not given: equal bins of the usual width up to most of what the box allows.
-static enum status find_bins(struct measured *measured, const struct frame_box *box,
+static enum status find_bins(struct measured *measured, const struct box_vectors *box,
                              const struct trajectory_frame *first) {
     struct measured_plan *const plan = &measured->plan;
     if (plan->height == 0)
-        plan->height = mf_frame_box_min_height(box);
+        plan->height = mf_box_vectors_min_height(box);
     if (plan->range == 0)
         plan->range = usual_width * floor(usual_part * plan->height / usual_width);
     if (!(plan->range > 0))
@@ -116,10 +116,10 @@ static enum status find_bins(struct measured *measured, const struct frame_box *
 }
 
 double mf_measured_height(const struct trajectory_frame *frames, size_t count, double least) {
-    struct frame_box box;
+    struct box_vectors box;
     for (size_t k = 0; k < count; k++)
         if (mf_frame_box_find(&box, &frames[k]) == STATUS_OK)
-            least = fmin(least, mf_frame_box_min_height(&box));
+            least = fmin(least, mf_box_vectors_min_height(&box));
     return least;
 }
 
@@ -131,28 +131,59 @@ bool mf_measured_fits(const struct measured *measured, const struct measured_pla
     return measured->in_vacuum || (range && escapes);
 }
 
-static void plan_waves(struct measured *measured, const struct frame_box *box) {
-    struct measured_plan *const plan = &measured->plan;
-    const double density = (double)measured->mapping->beads / box->volume;
-    if (isnan(plan->q_maximum))
-        plan->q_maximum = 4 * acos(-1) * cbrt(density);
-    if (plan->waves == 0)
-        plan->waves = USUAL_WAVES;
-    measured->waves = (struct density_waves_plan){.composition = measured->pairs.composition,
-                                                  .q_maximum = plan->q_maximum,
-                                                  .bins = WAVE_BINS,
-                                                  .max = (size_t)plan->waves};
+/// What is known of beads in all frames.
+static enum status describe(struct measured *measured, const struct box_vectors *box) {
+    const struct mapping *const mapping = measured->mapping;
+    bool known = true;
+    for (size_t k = 0; k < mapping->beads; k++)
+        known = known && isfinite(mapping->bead[k].mass);
+    if (known)
+        TRY_ARRAY(measured->mass, mapping->beads);
+    for (size_t k = 0; known && k < mapping->beads; k++)
+        measured->mass[k] = mapping->bead[k].mass;
+    measured->configuration = (struct configuration){.dimensions = 3,
+                                                     .threads = measured->plan.threads,
+                                                     .count = mapping->beads,
+                                                     .box = *box,
+                                                     .composition = &measured->pairs.composition,
+                                                     .time_step = NAN,
+                                                     .mass = measured->mass};
+    return STATUS_OK;
 }
 
-static enum status plan_profile(struct measured *measured) {
-    const struct mapping *const mapping = measured->mapping;
-    struct density_profile_plan plan = {.composition = measured->pairs.composition,
-                                        .bins = (size_t)measured->plan.profile_bins,
-                                        .axis = measured->plan.profile_axis,
-                                        .masses = true};
-    for (size_t k = 0; k < mapping->beads; k++)
-        plan.masses = plan.masses && isfinite(mapping->bead[k].mass);
-    return plan.bins == 0 ? STATUS_OK : mf_density_profile_init(&measured->profile, &plan);
+/// Begin to measure an observable, after those that are.
+static enum status observe(struct measured *measured, const struct observable *observable,
+                           const void *settings) {
+    static const struct measure_plan plan = {.every = 1};
+    struct observable_use *use = measured->use;
+    while (use->observable)
+        use++;
+    use->observable = observable;
+    use->settings = mf_memory_zeroed(1, observable->settings_size);
+    if (use->settings == NULL)
+        return STATUS_NO_MEMORY;
+    memcpy(use->settings, settings, observable->settings_size);
+    return mf_observable_begin(use, &measured->configuration, &plan);
+}
+
+static void plan_waves(struct structure_factor_settings *waves, size_t beads, double volume) {
+    if (isnan(waves->q_maximum))
+        waves->q_maximum = 4 * acos(-1) * cbrt((double)beads / volume);
+    if (waves->bins == 0)
+        waves->bins = WAVE_BINS;
+    if (waves->waves == 0)
+        waves->waves = USUAL_WAVES;
+}
+
+static enum status begin_observables(struct measured *measured, const struct box_vectors *box) {
+    struct measured_plan *const plan = &measured->plan;
+    TRY(describe(measured, box));
+    plan_waves(&plan->waves, measured->mapping->beads, box->volume);
+    if (plan->waves.q_maximum > 0)
+        TRY(observe(measured, &mf_structure_factor, &plan->waves));
+    if (plan->profile.bins > 0)
+        TRY(observe(measured, &mf_density_profile_observable, &plan->profile));
+    return STATUS_OK;
 }
 
 static bool is_without_box(const struct trajectory_frame *frame) {
@@ -165,10 +196,10 @@ static bool is_without_box(const struct trajectory_frame *frame) {
 enum status mf_measured_begin(struct measured *measured, const struct measured_plan *plan,
                               const struct mapping *mapping, const struct trajectory_frame *first) {
     enum status status = STATUS_OK;
-    struct frame_box box;
+    struct box_vectors box;
     *measured = (struct measured){.plan = *plan, .mapping = mapping};
     measured->in_vacuum =
-        plan->molecules.molecules && plan->profile_bins == 0 && is_without_box(first);
+        plan->molecules.molecules && plan->profile.bins == 0 && is_without_box(first);
     if (!measured->in_vacuum)
         CHECK(mf_frame_box_find(&box, first));
     if (mapping->beads < 2)
@@ -182,9 +213,7 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
         goto done;
     CHECK(find_shares(measured));
     CHECK(find_bins(measured, &box, first));
-    plan_waves(measured, &box);
-    CHECK(plan_profile(measured));
-    CHECK(mf_structure_factor_init(&measured->factor, &measured->waves, 0));
+    CHECK(begin_observables(measured, &box));
     const struct box cube = cube_of(box.volume);
     if (plan->weighted.cutoff > 0)
         CHECK(mf_weighted_density_init(&measured->weighted, &plan->weighted, &cube, mapping->beads,
@@ -210,7 +239,6 @@ static void clear_slots(struct measured *measured) {
         for (int d = 0; d < 3; d++)
             mf_memory_free(slot->place[d]);
         mf_frame_pairs_clear(&slot->pairs);
-        mf_frame_waves_clear(&slot->waves);
         mf_memory_free(slot->weighted);
     }
     mf_memory_free(measured->slot);
@@ -223,8 +251,11 @@ void mf_measured_clear(struct measured *measured) {
     mf_rdf_clear(&measured->rdf.counted);
     mf_rdf_clear(&measured->intermolecular.counted);
     mf_measured_molecules_clear(&measured->molecules);
-    mf_structure_factor_clear(&measured->factor);
-    mf_density_profile_clear(&measured->profile);
+    for (struct observable_use *use = measured->use; use->observable; use++) {
+        mf_observable_end(use);
+        mf_memory_free(use->settings);
+    }
+    mf_memory_free(measured->mass);
     mf_weighted_density_clear(&measured->weighted);
     mf_measured_motion_clear(&measured->motion);
     mf_frame_features_clear(&measured->features);
@@ -281,17 +312,6 @@ static enum status find_weighted(const struct measured *measured, struct measure
                                 within ? measured->molecules.excluded_count : 0, slot->weighted);
 }
 
-static enum status find_waves(const struct measured *measured, struct measured_slot *slot) {
-    if (measured->plan.q_maximum == 0)
-        return STATUS_OK;
-    const enum status status =
-        mf_frame_waves_find(&slot->waves, &measured->waves, &slot->box, slot->place);
-    return status == STATUS_BAD_INPUT
-               ? mf_status_prefix(status, "%s: frame %zu: S(q), which --q-range 0 leaves out",
-                                  slot->beads.file, slot->beads.number)
-               : status;
-}
-
 static enum status look_at(void *context, size_t task, void *result) {
     const struct batch *const batch = context;
     struct measured *const measured = batch->measured;
@@ -304,7 +324,6 @@ static enum status look_at(void *context, size_t task, void *result) {
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->pairs.range,
                                  "the range of g(r)"));
     TRY(mf_frame_box_places(&slot->box, &slot->beads, slot->place));
-    TRY(find_waves(measured, slot));
     TRY(find_weighted(measured, slot));
     return find_pairs(measured, measured->frames + task, slot);
 }
@@ -321,19 +340,18 @@ static void add_pairs(struct measured *measured, const struct measured_slot *slo
         mf_rdf_add(&measured->intermolecular.counted, slot->pairs.counts, stride, weight);
 }
 
-/// Slabs are parallel to the other two vectors of the box, and counted along its height.
-static void add_profile(struct measured *measured, const struct measured_slot *slot) {
-    const struct mapping *const mapping = measured->mapping;
-    const int axis = measured->plan.profile_axis;
-    const double density = (double)measured->profile.plan.bins / slot->box.volume;
-    if (measured->plan.profile_bins == 0)
-        return;
-    mf_density_profile_next(&measured->profile);
-    for (size_t k = 0; k < mapping->beads; k++)
-        density_profile_add(&measured->profile, (int)mapping->bead[k].type,
-                            0x1p-32 * (uint32_t)slot->place[axis][k], density,
-                            mapping->bead[k].mass);
-    measured->profile_length += slot->box.height[axis];
+/// What may not suit the box of a frame are waves.
+static enum status observe_frame(struct measured *measured, const struct measured_slot *slot) {
+    measured->configuration.box = slot->box;
+    measured->configuration.fraction = slot->place;
+    for (const struct observable_use *use = measured->use; use->observable; use++) {
+        const enum status status = use->observable->sample(use->state, &measured->configuration);
+        if (status == STATUS_BAD_INPUT)
+            return mf_status_prefix(status, "%s: frame %zu: S(q), which --q-range 0 leaves out",
+                                    slot->beads.file, slot->beads.number);
+        TRY(status);
+    }
+    return STATUS_OK;
 }
 
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
@@ -342,9 +360,7 @@ static enum status add_one(struct measured *measured, const struct measured_slot
         return mf_measured_molecules_add(&measured->molecules, &slot->beads);
     }
     add_pairs(measured, slot);
-    add_profile(measured, slot);
-    if (slot->waves.numbers)
-        mf_structure_factor_add(&measured->factor, slot->waves.numbers);
+    TRY(observe_frame(measured, slot));
     if (slot->weighted)
         TRY(mf_weighted_density_add(&measured->weighted, slot->weighted, measured->mapping->beads));
     measured->frames++;
@@ -357,7 +373,7 @@ static enum status add_one(struct measured *measured, const struct measured_slot
 }
 
 static enum status begin_motion(struct measured *measured, const struct trajectory_frame *first) {
-    struct frame_box box;
+    struct box_vectors box;
     TRY(mf_frame_box_find(&box, first));
     return mf_measured_motion_begin(&measured->motion, &measured->plan.motion, measured->mapping,
                                     first, &box, measured->plan.height);

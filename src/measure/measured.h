@@ -8,26 +8,28 @@
 
 #include "measure/frame_features.h"
 #include "measure/frame_pairs.h"
-#include "measure/frame_waves.h"
 #include "measure/measured_molecules.h"
 #include "measure/measured_motion.h"
 #include "observe/density_profile.h"
 #include "observe/rdf_observable.h"
+#include "observe/structure_factor.h"
 #include "trajectory/mapping.h"
 
 struct measured_plan {
-    double range;         ///< of g(r) [nm]
-    double height;        ///< least of the boxes, by which ranges that are 0 go; 0: the first's
-    int64_t bins;         ///< of it
-    double q_maximum;     ///< of S(q) [1/nm]; NAN: 4π ρ^(1/3); 0: it is not measured
-    int64_t waves;        ///< of one of its bins at most; 0: 10
-    int profile_axis;     ///< of the density profile
-    int64_t profile_bins; ///< of it; 0: it is not measured
+    double range;  ///< of g(r) [nm]
+    double height; ///< least of the boxes, by which ranges that are 0 go; 0: the first's
+    int64_t bins;  ///< of it
+    struct structure_factor_settings waves; ///< q_maximum NAN: 4π ρ^(1/3); 0: it is not measured;
+                                            ///< 0 bins, waves: 100, 10
+    struct density_profile_settings profile;   ///< 0 bins: it is not measured
     struct weighted_density_settings weighted; ///< without a cutoff it is not measured
     struct measured_motion_plan motion;
     struct measured_molecules_plan molecules; ///< all zero: nobody tells of them
     int threads;
 };
+
+/// Observables of a plan, beside those of molecules, at most.
+enum { MEASURED_MAX = 2 };
 
 struct measured {
     struct measured_plan plan;
@@ -38,10 +40,9 @@ struct measured {
     uint32_t *molecule;                  ///< shape [beads], of what has several beads
     struct measured_slot {
         struct trajectory_frame beads;
-        struct frame_box box;
+        struct box_vectors box;
         int32_t *place[3]; ///< shape [beads]
         struct frame_pairs pairs;
-        struct frame_waves waves;
         double *weighted; ///< shape [beads]
     } * slot;             ///< one for each frame of a batch
     size_t slots;
@@ -49,10 +50,9 @@ struct measured {
                              ///< beads of different residues or molecules
     struct rdf_observed intermolecular; ///< of beads of different molecules, with `molecules`
     struct measured_molecules molecules;
-    struct density_waves_plan waves;
-    struct structure_factor factor;
-    struct density_profile profile;
-    double profile_length; ///< of the box along it, over all frames [nm]
+    double *mass;                                ///< shape [beads] [u]; NULL: not all are known
+    struct configuration configuration;          ///< of the frame that is added
+    struct observable_use use[MEASURED_MAX + 1]; ///< ended by one without an observable
     struct weighted_density weighted;
     struct measured_motion motion;
     struct frame_features features; ///< by which it is seen where equilibrium begins

@@ -82,7 +82,7 @@ static enum status choose_lags(const struct measured_motion *motion,
 
 static enum status begin_etd(struct measured_motion *motion, const struct motion_plan *plan,
                              size_t beads, const struct trajectory_frame *first,
-                             const struct frame_box *box, double height) {
+                             const struct box_vectors *box, double height) {
     const double spacing = cbrt(box->volume / (double)beads),
                  most = measured_motion_most * 0.5 * height;
     const double wish = motion->plan.escape;
@@ -117,7 +117,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct measured_motion_plan *plan,
                                      const struct mapping *mapping,
                                      const struct trajectory_frame *first,
-                                     const struct frame_box *box, double height) {
+                                     const struct box_vectors *box, double height) {
     enum status status = STATUS_OK;
     struct motion_plan lags;
     *motion = (struct measured_motion){.plan = *plan};
@@ -200,7 +200,7 @@ static double find_temperature(const struct measured_motion *motion,
     return squares / freedom * 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
 }
 
-static enum status add_pairs(struct measured_motion *motion, const struct frame_box *box,
+static enum status add_pairs(struct measured_motion *motion, const struct box_vectors *box,
                              int32_t *const place[3], const struct frame_pairs *pairs) {
     struct etd_frame frame = {.place = {place[0], place[1], place[2]},
                               .first = pairs->first,
@@ -212,7 +212,7 @@ static enum status add_pairs(struct measured_motion *motion, const struct frame_
 
 enum status mf_measured_motion_add(struct measured_motion *motion,
                                    const struct trajectory_frame *beads,
-                                   const struct frame_box *box, int32_t *const place[3],
+                                   const struct box_vectors *box, int32_t *const place[3],
                                    const struct frame_pairs *pairs) {
     if (!motion->begun)
         return STATUS_OK;

@@ -59,7 +59,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct measured_motion_plan *plan,
                                      const struct mapping *mapping,
                                      const struct trajectory_frame *first,
-                                     const struct frame_box *box, double height) MUST_USE;
+                                     const struct box_vectors *box, double height) MUST_USE;
 
 /// How far apart pairs are looked for in frame number `frame` from 0; 0: not at all.
 double mf_measured_motion_pairs_range(const struct measured_motion *motion, size_t frame);
@@ -69,7 +69,7 @@ double mf_measured_motion_pairs_range(const struct measured_motion *motion, size
 /// NO_MEMORY.
 enum status mf_measured_motion_add(struct measured_motion *motion,
                                    const struct trajectory_frame *beads,
-                                   const struct frame_box *box, int32_t *const place[3],
+                                   const struct box_vectors *box, int32_t *const place[3],
                                    const struct frame_pairs *pairs) MUST_USE;
 
 /// Take the mean interval of all frames for that of results.

@@ -9,10 +9,13 @@
 
 #include "dynamics/simulation.h"
 #include "forces/molecules.h"
+#include "system/box_vectors.h"
 
 struct configuration {
     struct simulation *simulation; ///< whose it is; NULL: of a trajectory
-    int dimensions;
+    int dimensions, threads;       ///< threads: that a sample may take
+    size_t count;                  ///< of beads
+    struct box_vectors box;
     const struct composition *composition; ///< types of the beads by their ids
     const struct molecules *molecules;     ///< that the beads are, or NULL
     double temperature;                    ///< of noise and moves [k_B T_0]; 0: not known
@@ -21,7 +24,19 @@ struct configuration {
     /// The beads: ids, places, masses. Those of molecules of a trajectory are made whole, in a box
     /// without end; NULL: the trajectory tells of no molecules.
     const struct particles *particles;
+    int32_t *const *fraction; ///< shape [3][count], of beads in the order of types: their places in
+                              ///< the box (system/box_vectors.h); NULL of a simulation
+    const double *mass;       ///< of these, shape [count] [u]; NULL: not all are known, or of a
+                              ///< simulation
 };
 
 /// What a simulation holds now, until it goes on. Tested: test_configuration.
 struct configuration mf_configuration_of(struct simulation *simulation);
+
+/// Types and numbers of the beads, also of those that are alike.
+struct composition mf_configuration_types(const struct configuration *configuration);
+
+/// Where the beads are along a vector of the box, as parts of its length; whole boxes are left out
+/// only of a trajectory. @param[out] share  shape [count], in the order of types
+/// Tested: test_configuration.
+void mf_configuration_shares(const struct configuration *configuration, int axis, double *share);

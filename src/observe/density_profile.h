@@ -13,6 +13,11 @@
 #include "observe/sample_blocks.h"
 #include "system/composition.h"
 
+struct density_profile_settings {
+    int axis;
+    int64_t bins;
+};
+
 struct density_profile_plan {
     struct composition composition;
     size_t bins, samples; ///< samples 0: as many as there will be

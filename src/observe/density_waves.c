@@ -166,9 +166,23 @@ static void begin_list(struct density_waves *waves, const double lattice[3][3],
     waves->vectors = 0;
 }
 
-enum status mf_density_waves_list(struct density_waves *waves, const double lattice[3][3],
-                                  const double length[3]) {
+/// b_i, and lengths of the box's own vectors; both 0 where there is no wave.
+static void find_lattice(const struct box_vectors *box, double lattice[3][3], double length[3]) {
+    for (int i = 0; i < 3; i++) {
+        const double *const edge = box->edge[i];
+        double square = 0;
+        for (int d = 0; d < 3; d++) {
+            lattice[i][d] = 2 * pi * box->inverse[i][d];
+            square += lattice[i][d] * lattice[i][d];
+        }
+        length[i] = square > 0 ? hypot(edge[0], hypot(edge[1], edge[2])) : 0;
+    }
+}
+
+enum status mf_density_waves_list(struct density_waves *waves, const struct box_vectors *box) {
     static const double max_tested = 1e3 * DENSITY_WAVES_MAX;
+    double lattice[3][3], length[3];
+    find_lattice(box, lattice, length);
     const double all = mf_density_waves_expected(waves->plan.q_maximum, length);
     OWNED size_t *seen = NULL, *members = NULL;
     if (waves->vectors > 0 && memcmp(waves->lattice, lattice, sizeof waves->lattice) == 0)
@@ -190,7 +204,7 @@ enum status mf_density_waves_list(struct density_waves *waves, const double latt
 /// Beads first … first + count − 1, whose phases are in memory.
 struct stretch {
     struct density_waves *waves;
-    const struct density_angles *angles;
+    const struct density_places *places;
     size_t first, count;
 };
 
@@ -199,10 +213,11 @@ static void find_phases(void *context, size_t begin, size_t end) {
     const struct stretch *const stretch = context;
     struct density_waves *const waves = stretch->waves;
     for (size_t k = begin; k < end; k++) {
-        double angle[3];
-        stretch->angles->report(stretch->angles->context, stretch->first + k, angle);
         for (int i = 0; i < 3; i++) {
-            const double c = cos(angle[i]), s = sin(angle[i]);
+            const double unit = stretch->places->unit[i];
+            const double angle =
+                unit > 0 ? unit * stretch->places->place[i][stretch->first + k] : 0;
+            const double c = cos(angle), s = sin(angle);
             double *phase = waves->phase[i] + k;
             phase[0] = 1;
             phase[STRETCH] = 0;
@@ -252,9 +267,9 @@ static void add_stretch(void *context, size_t begin, size_t end) {
     }
 }
 
-void mf_density_waves_find(struct density_waves *waves, const struct density_angles *angles,
+void mf_density_waves_find(struct density_waves *waves, const struct density_places *places,
                            int threads) {
-    struct stretch stretch = {.waves = waves, .angles = angles};
+    struct stretch stretch = {.waves = waves, .places = places};
     memset(waves->amplitude, 0,
            waves->vectors * (size_t)waves->plan.composition.types * 2 * sizeof *waves->amplitude);
     while (stretch.first < waves->count) {

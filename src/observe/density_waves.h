@@ -11,6 +11,7 @@
 #pragma once
 
 #include "base/status.h"
+#include "system/box_vectors.h"
 #include "system/composition.h"
 
 #include <stdbool.h>
@@ -52,24 +53,23 @@ void mf_density_waves_clear(struct density_waves *waves);
 /// wave has: more than there are, since they fill a ball in it.
 double mf_density_waves_expected(double q_maximum, const double length[3]);
 
-/// List the waves of a box, unless it is that of the last call.
-/// @param[in] lattice  b_i, one a row; 0 where there is no wave
-/// @param[in] length   of the box's own vectors, 0 likewise
+/// List the waves of a box, unless it is that of the last call. Along a vector without a reciprocal
+/// one there are none.
 /// Fails: BAD_INPUT, without a place, for more than DENSITY_WAVES_MAX that are taken, or for none;
 /// NO_MEMORY.
-/// Tested: test_frame_waves, test_structure_factor.
-enum status mf_density_waves_list(struct density_waves *waves, const double lattice[3][3],
-                                  const double length[3]) MUST_USE;
+/// Tested: test_density_waves, test_structure_factor.
+enum status mf_density_waves_list(struct density_waves *waves,
+                                  const struct box_vectors *box) MUST_USE;
 
-/// Where a bead is: angles φ of it along the box's vectors.
-struct density_angles {
-    void (*report)(const void *context, size_t bead, double angle[3]);
-    const void *context;
+/// Where beads are, in the order of types: their angles φ along the box's vectors are unit · place.
+struct density_places {
+    const double *place[3]; ///< shape [count]
+    double unit[3];         ///< 0: there is no such vector
 };
 
-/// Find ρ of all waves. The same bits for any number of threads. Tested: test_frame_waves,
+/// Find ρ of all waves. The same bits for any number of threads. Tested: test_density_waves,
 /// test_structure_factor.
-void mf_density_waves_find(struct density_waves *waves, const struct density_angles *angles,
+void mf_density_waves_find(struct density_waves *waves, const struct density_places *places,
                            int threads);
 
 /// Add S of all waves to those of their bins. @param[in,out] sums  shape [curves, bins]

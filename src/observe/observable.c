@@ -8,10 +8,11 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"
 #include "observe/shear_viscosity.h"
+#include "observe/structure_factor.h"
 #include "observe/weighted_density.h"
 
 /// Of which nothing else knows.
-extern const struct observable mf_structure_factor, mf_snapshots, mf_polarity_observable;
+extern const struct observable mf_snapshots, mf_polarity_observable;
 extern const struct observable mf_clusters, mf_local_density, mf_collisions, mf_conserved;
 extern const struct observable mf_molecule_sizes, mf_molecule_motion, mf_slab;
 

@@ -6,17 +6,15 @@ static const double pi = 3.14159265358979323846;
 enum status mf_particle_waves_init(struct particle_waves *waves, const struct box *box,
                                    const struct composition *composition, size_t count,
                                    const struct topology *topology, double q_maximum, size_t bins) {
-    double lattice[3][3] = {{0}}, length[3] = {0};
+    const struct box_vectors vectors = mf_box_vectors_of(box);
     *waves = (struct particle_waves){0};
-    for (int d = 0; d < box->dimensions; d++) {
-        length[d] = box->length[d];
-        lattice[d][d] = waves->unit[d] = 2 * pi / box->length[d];
-    }
+    for (int d = 0; d < box->dimensions; d++)
+        waves->unit[d] = 2 * pi / box->length[d];
     TRY(mf_component_sites_init(&waves->sites, box->dimensions, composition, count, topology));
     const struct density_waves_plan plan = {
         .composition = waves->sites.components, .q_maximum = q_maximum, .bins = bins};
     TRY(mf_density_waves_init(&waves->waves, &plan));
-    return mf_density_waves_list(&waves->waves, lattice, length);
+    return mf_density_waves_list(&waves->waves, &vectors);
 }
 
 void mf_particle_waves_clear(struct particle_waves *waves) {
@@ -25,15 +23,13 @@ void mf_particle_waves_clear(struct particle_waves *waves) {
     *waves = (struct particle_waves){0};
 }
 
-static void report_angle(const void *context, size_t site, double angle[3]) {
-    const struct particle_waves *const w = context;
-    for (int d = 0; d < 3; d++)
-        angle[d] = w->unit[d] > 0 ? w->unit[d] * w->sites.site[d][site] : 0;
-}
-
 void mf_particle_waves_find(struct particle_waves *waves, const struct particles *particles,
                             int threads) {
-    const struct density_angles angles = {report_angle, waves};
+    struct density_places places;
     mf_component_sites_find(&waves->sites, particles);
-    mf_density_waves_find(&waves->waves, &angles, threads);
+    for (int d = 0; d < 3; d++) {
+        places.place[d] = waves->sites.site[d];
+        places.unit[d] = waves->unit[d];
+    }
+    mf_density_waves_find(&waves->waves, &places, threads);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The density's waves (observe/density_waves.h) of a simulation's particles in its box: of
-/// its beads, or of the sites of its components (system/component_sites.h).
+/// @file The density's waves (observe/density_waves.h) of the sites of components
+/// (system/component_sites.h) in a rectangular box.
 #pragma once
 
 #include "observe/density_waves.h"
@@ -24,6 +24,6 @@ enum status mf_particle_waves_init(struct particle_waves *waves, const struct bo
 void mf_particle_waves_clear(struct particle_waves *waves);
 
 /// Find ρ of all waves of a configuration. The same bits for any number of threads.
-/// Tested: test_structure_factor, test_kirkwood_buff_waves.
+/// Tested: test_kirkwood_buff_waves.
 void mf_particle_waves_find(struct particle_waves *waves, const struct particles *particles,
                             int threads);

@@ -36,7 +36,8 @@ size_t mf_structure_factor_numbers(const struct structure_factor *factor) {
 
 // Samples -----------------------------------------------------------------------------------------
 
-void mf_structure_factor_take(const struct density_waves *waves, double *numbers) {
+/// What a sample has.
+static void take(const struct density_waves *waves, double *numbers) {
     const size_t bins = waves->plan.bins;
     memset(numbers, 0, waves->curves * bins * sizeof *numbers);
     mf_density_waves_add(waves, numbers);
@@ -55,8 +56,10 @@ static void join_blocks(struct structure_factor *factor) {
     factor->each *= 2;
 }
 
-void mf_structure_factor_add(struct structure_factor *factor, const double *numbers) {
+void mf_structure_factor_add(struct structure_factor *factor, const struct density_waves *waves,
+                             double *numbers) {
     const size_t count = mf_structure_factor_numbers(factor);
+    take(waves, numbers);
     if (factor->endless && factor->samples == factor->blocks * factor->each)
         join_blocks(factor);
     const size_t block = factor->samples++ / factor->each;

@@ -11,6 +11,12 @@
 #include "observe/density_waves.h"
 #include "observe/observable.h"
 
+struct structure_factor_settings {
+    double q_maximum; ///< [1/λ]
+    int64_t bins;
+    int64_t waves; ///< of a bin at most; 0: all
+};
+
 struct structure_factor {
     struct composition composition;
     size_t curves, bins;
@@ -30,11 +36,10 @@ void mf_structure_factor_clear(struct structure_factor *factor);
 /// How many numbers a sample has: S of each curve, |q| and 1, summed over the waves of each bin.
 size_t mf_structure_factor_numbers(const struct structure_factor *factor);
 
-/// Write a sample of waves whose ρ are found. @param[out] numbers  as many as said above
-void mf_structure_factor_take(const struct density_waves *waves, double *numbers);
-
-/// Add a sample; beyond those planned it is left out.
-void mf_structure_factor_add(struct structure_factor *factor, const double *numbers);
+/// Add a sample of waves whose ρ are found; beyond those planned it is left out.
+/// @param[out] numbers  as many as said above
+void mf_structure_factor_add(struct structure_factor *factor, const struct density_waves *waves,
+                             double *numbers);
 
 /// Blocks that are complete: what errors rest on.
 size_t mf_structure_factor_blocks(const struct structure_factor *factor);
@@ -57,3 +62,13 @@ void mf_structure_factor_curves_clear(struct structure_factor_curves *curves);
 /// waves there are, of q and −q one. Fails: IO, NO_MEMORY.
 enum status mf_structure_factor_write(const struct structure_factor *factor,
                                       const struct observable_results *results) MUST_USE;
+
+/// The state of the observable.
+struct structure_factor_state {
+    struct density_waves waves;
+    struct structure_factor factor;
+    double *share[3]; ///< shape [count]: where the beads are
+    double *numbers;  ///< of one sample
+};
+
+extern const struct observable mf_structure_factor;

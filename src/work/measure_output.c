@@ -400,12 +400,12 @@ static enum status write_used(const struct measure_result *result) {
     write_trajectories(result, writer);
     mf_json_write_number(writer, "range", plan->range);
     mf_json_write_integer(writer, "bins", plan->bins);
-    mf_json_write_number(writer, "q_maximum", plan->q_maximum);
-    mf_json_write_integer(writer, "waves", plan->waves);
-    if (plan->profile_bins > 0) {
+    mf_json_write_number(writer, "q_maximum", plan->waves.q_maximum);
+    mf_json_write_integer(writer, "waves", plan->waves.waves);
+    if (plan->profile.bins > 0) {
         mf_json_begin(writer, "density_profile");
-        mf_json_write_text(writer, "axis", mf_density_profile_axes[plan->profile_axis]);
-        mf_json_write_integer(writer, "bins", plan->profile_bins);
+        mf_json_write_text(writer, "axis", mf_density_profile_axes[plan->profile.axis]);
+        mf_json_write_integer(writer, "bins", plan->profile.bins);
         mf_json_end(writer);
     }
     if (plan->weighted.cutoff > 0) {

@@ -142,9 +142,9 @@ static void print_pairs(struct progress *progress, const struct measure_result *
                                                  : "");
     if (mf_rdf_observable.assess(&measured->rdf, NULL) != STATUS_OK)
         mf_progress_print(progress, "mesofit: warning: %s", mf_status_message());
-    if (measured->plan.q_maximum > 0)
+    if (measured->plan.waves.q_maximum > 0)
         mf_progress_print(progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
-                          measured->plan.q_maximum, (long long)measured->plan.waves);
+                          measured->plan.waves.q_maximum, (long long)measured->plan.waves.waves);
 }
 
 /// A temperature that is given, and that of the velocities: they are those of whole beads, so that

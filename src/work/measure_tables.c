@@ -72,12 +72,8 @@ enum status mf_measure_tables_write(const struct measure_result *result) {
     TRY(write_molecules(result, &results));
     if (!result->measured->in_vacuum && result->measured->plan.weighted.cutoff > 0)
         TRY(mf_weighted_density_write(&result->measured->weighted, &results));
-    if (!result->measured->in_vacuum && mf_structure_factor_blocks(&result->measured->factor) > 0)
-        TRY(mf_structure_factor_write(&result->measured->factor, &results));
-    if (result->measured->profile_length > 0)
-        TRY(mf_density_profile_write(
-            &result->measured->profile,
-            result->measured->profile_length / (double)result->measured->frames, 3, &results));
+    for (const struct observable_use *use = result->measured->use; use->observable; use++)
+        TRY(use->observable->write(use->state, &results));
     if (mf_measure_tables_have_motion(result))
         TRY(write_motion(result));
     return mf_measure_tables_have_etd(result)

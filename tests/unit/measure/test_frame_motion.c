@@ -49,7 +49,7 @@ static void show(const struct ways *ways, int t, enum images images,
 static double follow(double most, enum images images, struct frame_motion *motion, double *truth) {
     static struct ways ways;
     struct trajectory_frame frame = {0};
-    struct frame_box box;
+    struct box_vectors box;
     int32_t place[3][BEADS], *const places[3] = {place[0], place[1], place[2]};
     double off = 0, gone[3][BEADS] = {{0}};
     walk(&ways, most);

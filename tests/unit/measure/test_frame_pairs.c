@@ -29,7 +29,7 @@ enum { BOXES = sizeof boxes / sizeof *boxes };
 
 struct system {
     struct trajectory_frame frame;
-    struct frame_box box;
+    struct box_vectors box;
     struct frame_pairs_plan plan;
     double position[MAX_BEADS][3];
     uint32_t molecule[MAX_BEADS];
@@ -56,7 +56,7 @@ static struct system *make_system(const double box[3][3], const struct compositi
         s->place[i] = s->memory[i];
     assert_ok(mf_frame_box_find(&s->box, &s->frame));
     assert_ok(mf_frame_box_places(&s->box, &s->frame, s->place));
-    s->plan.range = share * mf_frame_box_min_height(&s->box);
+    s->plan.range = share * mf_box_vectors_min_height(&s->box);
     return s;
 }
 
@@ -280,7 +280,7 @@ static void test_frame_box_is_refused_when_it_is_none_or_too_small(void **state)
     // 3/√2.
     for (int i = 0; i < 3; i++)
         assert_close(s->box.height[i], i < 2 ? sqrt(6) : 3 / sqrt(2), 1e-4);
-    assert_close(mf_frame_box_min_height(&s->box), s->box.height[2], 0);
+    assert_close(mf_box_vectors_min_height(&s->box), s->box.height[2], 0);
     assert_close(s->box.volume, 3 * 3 * 2.1213, 1e-12);
     assert_ok(mf_frame_box_check_range(&s->box, &s->frame, 1.06, "r"));
     assert_fails(mf_frame_box_check_range(&s->box, &s->frame, 1.07, "the range of g(r)"),

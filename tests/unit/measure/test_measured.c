@@ -92,16 +92,22 @@ static struct measured_plan make_plan(double range, int64_t bins, double window)
         .range = range, .bins = bins, .motion = {.window = window, .threads = 1}, .threads = 1};
 }
 
+static const struct structure_factor *factor_of(const struct measured *measured) {
+    assert_ptr_equal(measured->use[0].observable, &mf_structure_factor);
+    return &((const struct structure_factor_state *)measured->use[0].state)->factor;
+}
+
 /// Independent beads have S = 1, beads of two types S_ab = 0, at every q. 400 numbers beyond 5 of
 /// their errors, of 50 blocks, come once in some hundred seeds.
 static void assert_waves_of_a_gas(const struct measured *measured) {
+    const struct structure_factor *const factor = factor_of(measured);
     struct structure_factor_curves curves;
-    assert_ok(mf_structure_factor_find(&measured->factor, &curves));
-    assert_int_equal(measured->factor.curves, 4);
+    assert_ok(mf_structure_factor_find(factor, &curves));
+    assert_int_equal(factor->curves, 4);
     assert_true(curves.bins > 80);
     for (size_t curve = 0; curve < 4; curve++)
         for (size_t k = 0; k < curves.bins; k++) {
-            const size_t at = curve * measured->factor.bins + k;
+            const size_t at = curve * factor->bins + k;
             assert_close(curves.value[at], curve == 2 ? 0 : 1, 5 * curves.error[at]);
             assert_true(curves.error[at] < 0.3);
         }
@@ -131,7 +137,7 @@ static void test_measured_g_is_one_when_an_ideal_gas_is_in_a_box_that_changes(vo
     }
     struct measured_plan plan = make_plan(0.8, BINS, 1);
     plan.motion.escape = 0.5;
-    plan.q_maximum = 12;
+    plan.waves.q_maximum = 12;
     measure(film, &plan, 7, &measured);
     assert_waves_of_a_gas(&measured);
     assert_ok(mf_rdf_result(&measured.rdf.counted, 1, g, error));
@@ -340,7 +346,7 @@ static void test_measured_bits_are_the_same_when_threads_and_batches_differ(void
     struct film *film = make_walk(12);
     struct measured one, other;
     struct measured_plan plan = make_plan(0.8, 40, 4);
-    plan.q_maximum = 12;
+    plan.waves.q_maximum = 12;
     measure(film, &plan, 2, &one);
     for (int threads = 2; threads <= 3; threads++) {
         plan.threads = plan.motion.threads = threads;
@@ -354,9 +360,9 @@ static void test_measured_bits_are_the_same_when_threads_and_batches_differ(void
         assert_memory_equal(m->products, n->products, curve);
         assert_memory_equal(one.motion.etd.counts, other.motion.etd.counts,
                             one.motion.etd.blocks * etd_cells(&one.motion.etd) * sizeof(uint64_t));
-        assert_memory_equal(one.factor.sums, other.factor.sums,
-                            one.factor.blocks * mf_structure_factor_numbers(&one.factor) *
-                                sizeof(double));
+        const struct structure_factor *const factor = factor_of(&one);
+        assert_memory_equal(factor->sums, factor_of(&other)->sums,
+                            factor->blocks * mf_structure_factor_numbers(factor) * sizeof(double));
         mf_measured_clear(&other);
     }
     mf_measured_clear(&one);

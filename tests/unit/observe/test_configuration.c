@@ -4,6 +4,7 @@
 // begun.
 #include "observe/measure.h"
 #include "shared/fluids.h"
+#include "shared/is_close.h"
 #include "shared/testing.h"
 
 static const struct measure_plan plan = {.samples = 10, .every = 5};
@@ -22,8 +23,25 @@ static void test_configuration_is_what_a_simulation_holds(void **state) {
     assert_int_equal(now.dimensions, 3);
     assert_true(now.time_step == fluid.setup.time_step && !now.sweeps);
     assert_true(now.temperature == fluid.setup.temperature);
+    assert_true(now.box.volume == mf_box_volume(&fluid.setup.box));
+    double share[200];
+    mf_configuration_shares(&now, 1, share);
+    for (size_t k = 0; k < now.count; k++)
+        assert_close(share[now.particles->id[k]] * fluid.setup.box.length[1],
+                     now.particles->position[1][k], 1e-12);
     mf_simulation_clear(&simulation);
     fluid_clear(&fluid);
+}
+
+static void test_configuration_of_a_trajectory_has_beads_in_the_order_of_types(void **state) {
+    (void)state;
+    int32_t place[3] = {INT32_MIN, 0, 1 << 30}, *const fraction[3] = {NULL, NULL, place};
+    const struct configuration frame = {.dimensions = 3, .count = 3, .fraction = fraction};
+    double share[3];
+    mf_configuration_shares(&frame, 2, share);
+    assert_close(share[0], -0.5, 0);
+    assert_close(share[1], 0, 0);
+    assert_close(share[2], 0.25, 0);
 }
 
 /// Nothing of them is called: what a trajectory has not would be read.
@@ -46,6 +64,7 @@ static void test_configuration_of_a_trajectory_is_refused_by_who_asks_for_more(v
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_configuration_is_what_a_simulation_holds),
+        cmocka_unit_test(test_configuration_of_a_trajectory_has_beads_in_the_order_of_types),
         cmocka_unit_test(test_configuration_of_a_trajectory_is_refused_by_who_asks_for_more),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// The structure factor of frames, against sums over pairs and what periodic systems have in common.
+// Waves in boxes of any shape, against sums over pairs and what periodic systems have in common.
 #include "base/rng.h"
-#include "measure/frame_waves.h"
+#include "measure/frame_box.h"
+#include "observe/measure.h"
+#include "observe/structure_factor.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
@@ -16,9 +18,9 @@ static const double rounding = 1e-6;
 
 struct scene {
     struct trajectory_frame frame;
-    struct frame_box box;
+    struct box_vectors box;
     int32_t *place[3];
-    struct frame_waves waves;
+    struct structure_factor_state state;
 };
 
 static void scene_init(struct scene *scene, const double box[3][3], uint64_t seed) {
@@ -37,16 +39,25 @@ static void scene_init(struct scene *scene, const double box[3][3], uint64_t see
 
 static void scene_clear(struct scene *scene) {
     mf_frame_clear(&scene->frame);
-    mf_frame_waves_clear(&scene->waves);
+    mf_structure_factor.clear(&scene->state);
     for (int i = 0; i < 3; i++)
         free(scene->place[i]);
 }
 
-static struct density_waves_plan make_plan(double q_maximum, size_t bins, size_t max) {
-    return (struct density_waves_plan){.composition = mf_composition_of_one(BEADS),
-                                       .q_maximum = q_maximum,
-                                       .bins = bins,
-                                       .max = max};
+/// S of the beads, summed over the waves of each bin, and how many these are.
+static const double *find(struct scene *scene, double q_maximum, int64_t bins, int64_t max) {
+    const struct structure_factor_settings settings = {q_maximum, bins, max};
+    const struct composition composition = mf_composition_of_one(BEADS);
+    const struct measure_plan plan = {.every = 1};
+    const struct configuration frame = {.dimensions = 3,
+                                        .threads = 1,
+                                        .count = BEADS,
+                                        .box = scene->box,
+                                        .composition = &composition,
+                                        .fraction = scene->place};
+    assert_ok(mf_structure_factor.begin(&scene->state, &settings, &frame, &plan));
+    assert_ok(mf_structure_factor.sample(&scene->state, &frame));
+    return scene->state.factor.sums;
 }
 
 /// (1/N) Σ_ij cos q·(r_i − r_j).
@@ -64,16 +75,15 @@ static double sum_over_pairs(const struct scene *scene, const double q[3]) {
 
 /// Waves with q·v = 2π n for the box's vectors v = (3, 0, 0), (1, 2.8, 0), (−1, 1.4, 2.5), solved
 /// by hand: one after the other, all of ±q.
-static void test_frame_waves_are_sums_over_pairs_when_a_box_is_tilted(void **state) {
+static void test_density_waves_are_sums_over_pairs_when_a_box_is_tilted(void **state) {
     (void)state;
     enum { BINS = 300, MAX = 6 };
     static const double tilted[3][3] = {{3, 0, 0}, {1, 2.8, 0}, {-1, 1.4, 2.5}};
     const double q_maximum = 6, turn = 2 * acos(-1);
-    const struct density_waves_plan plan = make_plan(q_maximum, BINS, 0);
     double sum[BINS] = {0}, members[BINS] = {0};
     struct scene scene;
     scene_init(&scene, tilted, 3);
-    assert_ok(mf_frame_waves_find(&scene.waves, &plan, &scene.box, scene.place));
+    const double *const numbers = find(&scene, q_maximum, BINS, 0);
     for (int a = -MAX; a <= MAX; a++)
         for (int b = -MAX; b <= MAX; b++)
             for (int c = -MAX; c <= MAX; c++) {
@@ -86,7 +96,6 @@ static void test_frame_waves_are_sums_over_pairs_when_a_box_is_tilted(void **sta
                 sum[bin] += 0.5 * sum_over_pairs(&scene, (const double[]){x, y, z});
                 members[bin] += 0.5;
             }
-    const double *const numbers = scene.waves.numbers;
     double all = 0;
     for (size_t bin = 0; bin < BINS; bin++) {
         assert_close(numbers[2 * BINS + bin], members[bin], 0);
@@ -98,43 +107,38 @@ static void test_frame_waves_are_sums_over_pairs_when_a_box_is_tilted(void **sta
 }
 
 /// One lattice has many cells: a, b + 2a, c − b has the same waves, and the same S.
-static void test_frame_waves_are_the_same_when_another_cell_tells_the_lattice(void **state) {
+static void test_density_waves_are_the_same_when_another_cell_tells_the_lattice(void **state) {
     (void)state;
     enum { BINS = 90 };
     static const double cube[3][3] = {{3, 0, 0}, {0, 3.3, 0}, {0, 0, 2.7}},
                         slanted[3][3] = {{3, 0, 0}, {6, 3.3, 0}, {0, -3.3, 2.7}};
-    const struct density_waves_plan plan = make_plan(9, BINS, 0);
     struct scene one, other;
     scene_init(&one, cube, 5);
     scene_init(&other, slanted, 5);
-    assert_ok(mf_frame_waves_find(&one.waves, &plan, &one.box, one.place));
-    assert_ok(mf_frame_waves_find(&other.waves, &plan, &other.box, other.place));
+    const double *const first = find(&one, 9, BINS, 0), *const second = find(&other, 9, BINS, 0);
     for (size_t k = 0; k < 3 * BINS; k++)
-        assert_close(one.waves.numbers[k], other.waves.numbers[k], 1e-4);
+        assert_close(first[k], second[k], 1e-4);
     scene_clear(&one);
     scene_clear(&other);
 }
 
 /// A bin keeps all of few waves, and just as many as wanted of more; their S are of the whole bin.
-static void test_frame_waves_are_evenly_fewer_when_a_bin_has_many(void **state) {
+static void test_density_waves_are_evenly_fewer_when_a_bin_has_many(void **state) {
     (void)state;
     enum { BINS = 20, MAX = 7 };
     static const double cube[3][3] = {{3, 0, 0}, {0, 3.3, 0}, {0, 0, 2.7}};
-    const struct density_waves_plan all = make_plan(12, BINS, 0), some = make_plan(12, BINS, MAX);
     struct scene one, other;
     double min = 1e9, max = 0;
     scene_init(&one, cube, 5);
     scene_init(&other, cube, 5);
-    assert_ok(mf_frame_waves_find(&one.waves, &all, &one.box, one.place));
-    assert_ok(mf_frame_waves_find(&other.waves, &some, &other.box, other.place));
+    const double *const all = find(&one, 12, BINS, 0), *const some = find(&other, 12, BINS, MAX);
     for (size_t k = 0; k < BINS; k++)
-        assert_close(other.waves.numbers[2 * BINS + k], fmin(one.waves.numbers[2 * BINS + k], MAX),
-                     0);
+        assert_close(some[2 * BINS + k], fmin(all[2 * BINS + k], MAX), 0);
     // Of the last bin, from one end of the list to the other.
-    for (size_t k = 0; k < other.waves.waves.vectors; k++)
-        if (other.waves.waves.wave[k].bin == BINS - 1) {
-            min = fmin(min, other.waves.waves.wave[k].n[2]);
-            max = fmax(max, other.waves.waves.wave[k].n[2]);
+    for (size_t k = 0; k < other.state.waves.vectors; k++)
+        if (other.state.waves.wave[k].bin == BINS - 1) {
+            min = fmin(min, other.state.waves.wave[k].n[2]);
+            max = fmax(max, other.state.waves.wave[k].n[2]);
         }
     assert_true(min <= 1 && max >= 4);
     scene_clear(&one);
@@ -143,9 +147,9 @@ static void test_frame_waves_are_evenly_fewer_when_a_bin_has_many(void **state) 
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frame_waves_are_sums_over_pairs_when_a_box_is_tilted),
-        cmocka_unit_test(test_frame_waves_are_the_same_when_another_cell_tells_the_lattice),
-        cmocka_unit_test(test_frame_waves_are_evenly_fewer_when_a_bin_has_many),
+        cmocka_unit_test(test_density_waves_are_sums_over_pairs_when_a_box_is_tilted),
+        cmocka_unit_test(test_density_waves_are_the_same_when_another_cell_tells_the_lattice),
+        cmocka_unit_test(test_density_waves_are_evenly_fewer_when_a_bin_has_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
