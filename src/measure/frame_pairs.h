@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Pairs of beads in a frame: how many at which distance, and which are near.
+/// @file Pairs of beads in a frame: how many at which distance, and how dense it is around each.
 #pragma once
 
 #include "base/status.h"
 #include "measure/frame_box.h"
 #include "observe/weighted_density.h"
-#include "system/cells.h"
 #include "system/composition.h"
+#include "system/cell_pairs.h"
 
 /// What is counted, the same for all frames.
 struct frame_pairs_plan {
@@ -19,15 +19,11 @@ struct frame_pairs_plan {
 
 /// Memory of one thread, used again for every frame; all zero is none.
 struct frame_pairs {
-    struct cells cells;       ///< of fractions of the box's vectors, half a range high or more
-    int reach[3];             ///< of a range, in cells
-    int32_t *place[3];        ///< shape [beads]: their places, in the order of cells
-    int32_t *type;            ///< likewise their types, of a mixture
-    uint32_t *molecule;       ///< likewise, if pairs of one are left out
-    uint64_t *counts;         ///< shape [pair types, bins + 1]; the last bin is of what is left out
-    uint64_t *within;         ///< the same of pairs of one molecule, if these are counted
-    uint32_t *first, *second; ///< shape [near_count]: beads of pairs that are near
-    size_t near_count, near_capacity;
+    struct cell_pairs search;
+    int32_t *type;      ///< shape [beads]: in the order of cells, of a mixture
+    uint32_t *molecule; ///< likewise, if pairs of one are left out
+    uint64_t *counts;   ///< shape [pair types, bins + 1]; the last bin is of what is left out
+    uint64_t *within;   ///< the same of pairs of one molecule, if these are counted
 };
 
 void mf_frame_pairs_clear(struct frame_pairs *pairs);
@@ -43,14 +39,7 @@ enum status mf_frame_pairs_count(struct frame_pairs *pairs, const struct frame_p
 /// pairs->within has all pairs but those. Tested: cli/test_measure_molecules.
 /// @param[in] excluded  shape [count, 2]: beads
 void mf_frame_pairs_exclude(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                            const struct box_vectors *box, int32_t *const place[3],
-                            uint32_t (*excluded)[2], size_t count);
-
-/// Find the pairs nearer than `range`, of whatever types, into pairs->first and
-/// second. Fails: NO_MEMORY.
-enum status mf_frame_pairs_find(struct frame_pairs *pairs, const struct frame_pairs_plan *plan,
-                                double range, const struct box_vectors *box,
-                                int32_t *const place[3]) MUST_USE;
+                            int32_t *const place[3], uint32_t (*excluded)[2], size_t count);
 
 /// Find the weighted density around each bead, of the pairs that are counted as those of different
 /// molecules; or, if pairs within them are counted, of all but `excluded`.

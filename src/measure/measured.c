@@ -147,6 +147,7 @@ static enum status describe(struct measured *measured, const struct box_vectors 
                                                      .box = *box,
                                                      .composition = &measured->pairs.composition,
                                                      .time_step = NAN,
+                                                     .molecule = measured->pairs.molecule,
                                                      .mass = measured->mass};
     return STATUS_OK;
 }
@@ -285,17 +286,10 @@ struct batch {
     const struct trajectory_frame *frame;
 };
 
-/// Count pairs, and find those that escape times ask for.
-static enum status find_pairs(const struct measured *measured, size_t frame,
-                              struct measured_slot *slot) {
-    const double near = mf_measured_motion_pairs_range(&measured->motion, frame);
-    if (near > 0) {
-        TRY(mf_frame_box_check_range(&slot->box, &slot->beads, near, "the range of escape times"));
-        TRY(mf_frame_pairs_find(&slot->pairs, &measured->pairs, near, &slot->box, slot->place));
-    }
+static enum status find_pairs(const struct measured *measured, struct measured_slot *slot) {
     TRY(mf_frame_pairs_count(&slot->pairs, &measured->pairs, &slot->box, slot->place));
     if (measured->pairs.within)
-        mf_frame_pairs_exclude(&slot->pairs, &measured->pairs, &slot->box, slot->place,
+        mf_frame_pairs_exclude(&slot->pairs, &measured->pairs, slot->place,
                                measured->molecules.excluded, measured->molecules.excluded_count);
     return STATUS_OK;
 }
@@ -325,7 +319,7 @@ static enum status look_at(void *context, size_t task, void *result) {
                                  "the range of g(r)"));
     TRY(mf_frame_box_places(&slot->box, &slot->beads, slot->place));
     TRY(find_weighted(measured, slot));
-    return find_pairs(measured, measured->frames + task, slot);
+    return find_pairs(measured, slot);
 }
 
 static void add_pairs(struct measured *measured, const struct measured_slot *slot) {
@@ -367,8 +361,7 @@ static enum status add_one(struct measured *measured, const struct measured_slot
     TRY(mf_frame_features_add(&measured->features, &measured->pairs, &slot->pairs,
                               slot->box.volume));
     TRY(mf_measured_molecules_add(&measured->molecules, &slot->beads));
-    TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &slot->box, slot->place,
-                               &slot->pairs));
+    TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &measured->configuration));
     return mf_series_add(&measured->volume, slot->box.volume);
 }
 

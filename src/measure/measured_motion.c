@@ -156,10 +156,6 @@ void mf_measured_motion_clear(struct measured_motion *motion) {
 
 // Frames ------------------------------------------------------------------------------------------
 
-double mf_measured_motion_pairs_range(const struct measured_motion *motion, size_t frame) {
-    return motion->begun && mf_etd_opens(&motion->etd, frame) ? motion->etd.grid.r_maximum : 0;
-}
-
 static enum status check_frame(const struct measured_motion *motion,
                                const struct trajectory_frame *beads) {
     const double gone = beads->time - motion->last_time;
@@ -200,27 +196,25 @@ static double find_temperature(const struct measured_motion *motion,
     return squares / freedom * 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
 }
 
-static enum status add_pairs(struct measured_motion *motion, const struct box_vectors *box,
-                             int32_t *const place[3], const struct frame_pairs *pairs) {
-    struct etd_frame frame = {.place = {place[0], place[1], place[2]},
-                              .first = pairs->first,
-                              .second = pairs->second,
-                              .pairs = pairs->near_count};
-    memcpy(frame.edge, box->edge, sizeof frame.edge);
-    return mf_etd_add(&motion->etd, &frame);
+static enum status add_pairs(struct measured_motion *motion, const struct trajectory_frame *beads,
+                             const struct configuration *configuration) {
+    struct etd *const etd = &motion->etd;
+    if (mf_etd_opens(etd, etd->state.samples))
+        TRY(mf_frame_box_check_range(&configuration->box, beads, etd->grid.r_maximum,
+                                     "the range of escape times"));
+    return mf_etd_sample(etd, configuration);
 }
 
 enum status mf_measured_motion_add(struct measured_motion *motion,
                                    const struct trajectory_frame *beads,
-                                   const struct box_vectors *box, int32_t *const place[3],
-                                   const struct frame_pairs *pairs) {
+                                   const struct configuration *configuration) {
     if (!motion->begun)
         return STATUS_OK;
     TRY(check_frame(motion, beads));
-    const double *const state = mf_frame_motion_add(&motion->path, beads, place);
+    const double *const state = mf_frame_motion_add(&motion->path, beads, configuration->fraction);
     if (state)
         mf_motion_add(&motion->motion, state, motion->plan.threads);
-    TRY(add_pairs(motion, box, place, pairs));
+    TRY(add_pairs(motion, beads, configuration));
     if (beads->has_velocities && motion->is_thermal)
         TRY(mf_series_add(&motion->temperature, find_temperature(motion, beads)));
     motion->last_time = beads->time;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "measure/frame_motion.h"
-#include "measure/frame_pairs.h"
 #include "measure/series.h"
 #include "observe/etd.h"
 #include "observe/motion.h"
@@ -61,16 +60,12 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct trajectory_frame *first,
                                      const struct box_vectors *box, double height) MUST_USE;
 
-/// How far apart pairs are looked for in frame number `frame` from 0; 0: not at all.
-double mf_measured_motion_pairs_range(const struct measured_motion *motion, size_t frame);
-
-/// Add the next frame; `pairs` has those near if they were looked for. Fails: BAD_INPUT, naming the
-/// frame, if it is not an interval after the one before, or has no velocities where others have;
-/// NO_MEMORY.
+/// Add the next frame, whose beads are also told as a configuration. Fails: BAD_INPUT, naming the
+/// frame, if it is not an interval after the one before, has no velocities where others have, or a
+/// box too small; NO_MEMORY.
 enum status mf_measured_motion_add(struct measured_motion *motion,
                                    const struct trajectory_frame *beads,
-                                   const struct box_vectors *box, int32_t *const place[3],
-                                   const struct frame_pairs *pairs) MUST_USE;
+                                   const struct configuration *configuration) MUST_USE;
 
 /// Take the mean interval of all frames for that of results.
 void mf_measured_motion_end(struct measured_motion *motion);

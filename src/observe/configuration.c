@@ -33,3 +33,17 @@ void mf_configuration_shares(const struct configuration *configuration, int axis
             share[particles->id[k]] =
                 particles->position[axis][k] * configuration->box.inverse[axis][axis];
 }
+
+bool mf_configuration_leaves_out(const struct configuration *configuration, uint32_t a,
+                                 uint32_t b) {
+    const struct topology *const topology =
+        configuration->particles ? configuration->particles->topology : NULL;
+    if (configuration->molecule)
+        return configuration->molecule[a] == configuration->molecule[b];
+    if (topology == NULL)
+        return false;
+    for (size_t n = topology->excluded_start[a]; n < topology->excluded_start[a + 1]; n++)
+        if (topology->excluded[n] == b)
+            return true;
+    return false;
+}

@@ -26,6 +26,8 @@ struct configuration {
     const struct particles *particles;
     int32_t *const *fraction; ///< shape [3][count], of beads in the order of types: their places in
                               ///< the box (system/box_vectors.h); NULL of a simulation
+    const uint32_t *molecule; ///< of these, shape [count]: pairs of one are none; NULL: those that
+                              ///< topologies exclude are not
     const double *mass;       ///< of these, shape [count] [u]; NULL: not all are known, or of a
                               ///< simulation
 };
@@ -40,3 +42,6 @@ struct composition mf_configuration_types(const struct configuration *configurat
 /// only of a trajectory. @param[out] share  shape [count], in the order of types
 /// Tested: test_configuration.
 void mf_configuration_shares(const struct configuration *configuration, int axis, double *share);
+
+/// Whether beads of these ids, or numbers in the order of types, are no pair.
+bool mf_configuration_leaves_out(const struct configuration *configuration, uint32_t a, uint32_t b);

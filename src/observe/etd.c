@@ -68,7 +68,6 @@ static enum status allocate(struct etd *etd, size_t count) {
     TRY_ARRAY(etd->counts, etd->blocks * etd_cells(etd));
     for (int d = 0; d < 3; d++)
         TRY_ARRAY(etd->place[d], count);
-    TRY_ARRAY(etd->squares, count + BATCH);
     return mf_etd_reserve(etd);
 }
 
@@ -77,16 +76,10 @@ enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const stru
     enum status status = STATUS_OK;
     const struct box *box = &simulation->setup.box;
     const size_t count = simulation->particles.count;
-    *etd = (struct etd){.grid = *grid, .plan = *plan, .begin = begin};
+    *etd = (struct etd){.grid = *grid, .plan = *plan, .begin = begin, .count = count};
     CHECK(check(grid, box));
     CHECK(count_origins(etd, steps));
     CHECK(allocate(etd, count));
-    for (int d = 0; d < 3; d++) {
-        NEW_ARRAY(etd->listed[d], count);
-        etd->edge[d][d] = d < box->dimensions ? box->length[d] : 0;
-    }
-    CHECK(mf_particles_init(&etd->own_particles, box, count));
-    CHECK(mf_neighbours_init(&etd->manifest, NEIGHBOURS_HALF, box, count, grid->r_maximum, 0));
 done:
     if (status != STATUS_OK)
         mf_etd_clear(etd);
@@ -113,13 +106,9 @@ void mf_etd_clear(struct etd *etd) {
     mf_memory_free(etd->began);
     mf_memory_free(etd->open);
     mf_memory_free(etd->counts);
-    for (int d = 0; d < 3; d++) {
+    for (int d = 0; d < 3; d++)
         mf_memory_free(etd->place[d]);
-        mf_memory_free(etd->listed[d]);
-    }
-    mf_memory_free(etd->squares);
-    mf_particles_clear(&etd->own_particles);
-    mf_neighbours_clear(&etd->manifest);
+    mf_cell_pairs_clear(&etd->search);
     *etd = (struct etd){0};
 }
 
@@ -138,10 +127,10 @@ struct metric {
     double limit;      ///< of what has escaped [λ²]
 };
 
-static struct metric make_metric(int32_t *const place[3], const struct etd *etd) {
+static struct metric make_metric(const struct etd *etd) {
     struct metric metric = {.limit = etd->grid.r_maximum * etd->grid.r_maximum};
     for (int d = 0; d < 3; d++) {
-        metric.place[d] = place[d];
+        metric.place[d] = etd->place[d];
         for (int e = 0; e < 3; e++)
             metric.edge[d][e] = etd->edge[d][e] * 0x1p-32;
     }
@@ -169,21 +158,18 @@ SIMD_CLONES static void measure_pairs(const struct metric *metric, const uint32_
         squares[k] = square_distance(&m, first[k], second[k]);
 }
 
-SIMD_CLONES static void measure_row(const struct metric *metric, size_t i, const int32_t *row,
-                                    size_t count, double *restrict squares) {
-    const struct metric m = *metric;
-    for (size_t k = 0; k < count; k++)
-        squares[k] = square_distance(&m, i, (size_t)row[k]);
-}
-
-/// Positions by id. Not those that the simulation keeps for its kernels: these may be of the middle
-/// of the step.
-static void gather(struct etd *etd, const struct particles *particles) {
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        const double inverse = 1 / particles->box.length[d];
-        for (size_t k = 0; k < particles->count; k++)
-            etd->place[d][particles->id[k]] = box_fraction(particles->position[d][k], inverse);
-    }
+/// Places by id. Of a simulation not those that it keeps for its kernels: these may be of the
+/// middle of the step.
+static void gather(struct etd *etd, const struct configuration *configuration) {
+    const struct particles *const particles = configuration->particles;
+    memcpy(etd->edge, configuration->box.edge, sizeof etd->edge);
+    for (int d = 0; d < configuration->dimensions; d++)
+        for (size_t k = 0; k < etd->count; k++)
+            if (configuration->fraction)
+                etd->place[d][k] = configuration->fraction[d][k];
+            else
+                etd->place[d][particles->id[k]] =
+                    box_fraction(particles->position[d][k], configuration->box.inverse[d][d]);
 }
 
 /// Count an escape for every window that the pair is in, and end its record.
@@ -199,12 +185,13 @@ static void escape(struct etd *etd, size_t record) {
 }
 
 static void find_escapes(struct etd *etd) {
-    const struct metric metric = make_metric(etd->place, etd);
+    const struct metric metric = make_metric(etd);
+    double squares[BATCH];
     for (size_t begin = 0; begin < etd->state.followed; begin += BATCH) {
         const size_t left = etd->state.followed - begin, count = left < BATCH ? left : BATCH;
-        measure_pairs(&metric, etd->first + begin, etd->second + begin, count, etd->squares);
+        measure_pairs(&metric, etd->first + begin, etd->second + begin, count, squares);
         for (size_t k = 0; k < count; k++)
-            if (etd->squares[k] >= metric.limit)
+            if (squares[k] >= metric.limit)
                 escape(etd, begin + k);
     }
 }
@@ -271,54 +258,6 @@ static enum status begin_pair(struct etd *etd, size_t slot, uint32_t a, uint32_t
     return STATUS_OK;
 }
 
-static enum status search_list(struct etd *etd, size_t slot, const struct neighbours *neighbours,
-                               const uint32_t *id) {
-    const struct metric metric = make_metric(etd->listed, etd);
-    for (int d = 0; d < etd->own_particles.box.dimensions; d++)
-        for (size_t k = 0; k < neighbours->count; k++)
-            etd->listed[d][k] = etd->place[d][id[k]];
-    for (size_t i = 0; i < neighbours->count; i++) {
-        const int32_t *row = neighbours->list + neighbours->start[i];
-        const size_t count = neighbours->stop[i] - neighbours->start[i];
-        measure_row(&metric, i, row, count, etd->squares);
-        for (size_t k = 0; k < count; k++)
-            if (etd->squares[k] < metric.limit && (size_t)row[k] != i)
-                TRY(begin_pair(etd, slot, id[i], id[row[k]], etd->squares[k]));
-    }
-    return STATUS_OK;
-}
-
-/// Whether every pair within `range` is on the list: none can be that was farther apart than the
-/// list's range when it was built.
-static bool covers(const struct neighbours *neighbours, const struct particles *particles,
-                   double range) {
-    double max = 0;
-    for (size_t k = 0; k < particles->count; k++) {
-        double square = 0;
-        for (int d = 0; d < particles->box.dimensions; d++) {
-            const double moved = particles->position[d][k] - neighbours->built[d][k];
-            square += moved * moved;
-        }
-        max = square > max ? square : max;
-    }
-    return range + 2 * sqrt(max) <= neighbours->range;
-}
-
-static enum status search_own_list(struct etd *etd, size_t slot,
-                                   const struct particles *particles) {
-    struct particles *own = &etd->own_particles;
-    // `order` of the search is free until it is used: from ids to the simulation's order.
-    uint32_t *order = etd->manifest.cells.order;
-    for (size_t k = 0; k < particles->count; k++)
-        order[particles->id[k]] = (uint32_t)k;
-    for (int d = 0; d < particles->box.dimensions; d++)
-        for (size_t k = 0; k < own->count; k++)
-            own->position[d][k] = particles->position[d][order[own->id[k]]];
-    TRY(mf_particles_join(own, particles->topology));
-    TRY(mf_neighbours_sort_and_build(&etd->manifest, own));
-    return search_list(etd, slot, &etd->manifest, own->id);
-}
-
 bool mf_etd_opens(const struct etd *etd, uint64_t sample) {
     const uint64_t every = (uint64_t)etd->plan.origin_every;
     return sample % every == 0 && sample / every < etd->origins;
@@ -336,46 +275,42 @@ static size_t open_window(struct etd *etd) {
     return slot;
 }
 
-static enum status search_simulation(struct etd *etd, const struct simulation *simulation) {
-    const struct particles *particles = &simulation->particles;
-    const size_t slot = open_window(etd);
-    if (covers(&simulation->neighbours, particles, etd->grid.r_maximum))
-        return search_list(etd, slot, &simulation->neighbours, particles->id);
-    return search_own_list(etd, slot, particles);
-}
+struct opening {
+    struct etd *etd;
+    const struct configuration *configuration;
+    bool apart; ///< some pairs are none
+    size_t slot;
+    enum status status;
+};
 
-enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) {
-    gather(etd, &simulation->particles);
-    find_escapes(etd);
-    search_window(etd);
-    if (mf_etd_opens(etd, etd->state.samples))
-        TRY(search_simulation(etd, simulation));
-    etd->state.samples++;
-    return STATUS_OK;
-}
-
-static enum status search_pairs(struct etd *etd, const struct etd_frame *frame) {
-    const struct metric metric = make_metric(etd->place, etd);
-    const size_t slot = open_window(etd);
-    for (size_t begin = 0; begin < frame->pairs; begin += BATCH) {
-        const size_t left = frame->pairs - begin, count = left < BATCH ? left : BATCH;
-        const uint32_t *first = frame->first + begin, *second = frame->second + begin;
-        measure_pairs(&metric, first, second, count, etd->squares);
-        for (size_t k = 0; k < count; k++)
-            if (etd->squares[k] < metric.limit)
-                TRY(begin_pair(etd, slot, first[k], second[k], etd->squares[k]));
+static void begin_pairs(void *context, const struct cell_pairs_batch *batch) {
+    struct opening *const opening = context;
+    struct etd *const etd = opening->etd;
+    const double limit = etd->grid.r_maximum * etd->grid.r_maximum;
+    const uint32_t *const id = etd->search.cells.order, a = id[batch->i];
+    double squares[CELL_PAIRS_BATCH];
+    mf_cell_pairs_squares(batch, squares);
+    for (size_t k = 0; k < batch->count && opening->status == STATUS_OK; k++) {
+        const uint32_t b = id[batch->begin + k];
+        if (squares[k] < limit &&
+            !(opening->apart && mf_configuration_leaves_out(opening->configuration, a, b)))
+            opening->status = begin_pair(etd, opening->slot, a, b, squares[k]);
     }
-    return STATUS_OK;
 }
 
-enum status mf_etd_add(struct etd *etd, const struct etd_frame *frame) {
-    memcpy(etd->edge, frame->edge, sizeof etd->edge);
-    for (int d = 0; d < 3; d++)
-        memcpy(etd->place[d], frame->place[d], etd->count * sizeof *etd->place[d]);
+enum status mf_etd_sample(struct etd *etd, const struct configuration *configuration) {
+    gather(etd, configuration);
     find_escapes(etd);
     search_window(etd);
-    if (mf_etd_opens(etd, etd->state.samples))
-        TRY(search_pairs(etd, frame));
+    if (mf_etd_opens(etd, etd->state.samples)) {
+        struct opening opening = {etd, configuration,
+                                  configuration->molecule || configuration->molecules,
+                                  open_window(etd), STATUS_OK};
+        TRY(mf_cell_pairs_sort(&etd->search, &configuration->box, etd->place, etd->count,
+                               etd->grid.r_maximum));
+        mf_cell_pairs_visit(&etd->search, begin_pairs, &opening);
+        TRY(opening.status);
+    }
     etd->state.samples++;
     return STATUS_OK;
 }

@@ -14,7 +14,8 @@
 
 #include "base/fields.h"
 #include "base/memory.h"
-#include "dynamics/simulation.h"
+#include "observe/configuration.h"
+#include "system/cell_pairs.h"
 
 /// Equal bins of r_0 from r_minimum to r_maximum [λ]; `times` counts t = 0.
 struct etd_grid {
@@ -58,13 +59,10 @@ struct etd {
     uint64_t *began;          ///< shape [slots]: samples before the origin
     uint32_t *open;   ///< shape [slots, times, bins]: pairs at time 0, then those escaped at a time
     uint64_t *counts; ///< shape [blocks, times, bins]: the same of all complete windows
-    int32_t *place[3];  ///< shape [particles]: box_fraction by id
-    int32_t *listed[3]; ///< shape [particles]: the same in the order of the list that is searched
-    double *squares;    ///< room for the squared distances [λ²] of a batch or a row of the list
+    int32_t *place[3];       ///< shape [particles]: box_fraction by id
     uint32_t *bucket, *next; ///< shapes [buckets], [room]: records by the hash of their pair
     size_t buckets;
-    struct particles own_particles; ///< for when the simulation's list is too short
-    struct neighbours manifest;
+    struct cell_pairs search;
 };
 
 /// Cells of a matrix of times and bins.
@@ -79,9 +77,8 @@ static inline size_t etd_cells(const struct etd *etd) {
 enum status mf_etd_init(struct etd *etd, const struct etd_grid *grid, const struct etd_plan *plan,
                         const struct simulation *simulation, int64_t begin, int64_t steps) MUST_USE;
 
-/// Prepare for samples that others take (mf_etd_add), as many as there will be, of `count`
-/// particles in three dimensions. Blocks have equal numbers of origins, and are joined two by two
-/// when there are 20. Fails: NO_MEMORY.
+/// Prepare for the frames of a trajectory, as many as there will be, of `count` beads. Blocks have
+/// equal numbers of origins, and are joined two by two when there are 20. Fails: NO_MEMORY.
 enum status mf_etd_init_endless(struct etd *etd, const struct etd_grid *grid, int64_t origin_every,
                                 size_t count) MUST_USE;
 void mf_etd_clear(struct etd *etd);
@@ -95,29 +92,15 @@ uint64_t mf_etd_pairs(const struct etd *etd);
 /// The step of the next sample, or INT64_MAX after the last.
 int64_t mf_etd_due(const struct etd *etd);
 
-/// Add the present positions: those of step mf_etd_due. The simulation is left alone.
+/// Add a configuration: of a simulation that of step mf_etd_due.
 ///
-/// Linear in the pairs within r_maximum, and at an origin in those of the list, which serves as it
-/// is if none of its particles has gone too far. The same counts for any number of threads, list,
-/// or order of particles: distances are in double precision of 32-bit fractions of the box (2e-9
-/// λ). Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force.
-enum status mf_etd_sample(struct etd *etd, const struct simulation *simulation) MUST_USE;
+/// Linear in the pairs within r_maximum, and at an origin in those around. The same counts for any
+/// number of threads or order of particles: distances are in double precision of 32-bit fractions
+/// of the box (2e-9 λ). Fails: NO_MEMORY. Tested: test_etd, test_etd_brute_force, test_measured.
+enum status mf_etd_sample(struct etd *etd, const struct configuration *configuration) MUST_USE;
 
-/// Whether sample number `sample`, from 0, is an origin, which needs the pairs.
+/// Whether sample number `sample`, from 0, is an origin.
 bool mf_etd_opens(const struct etd *etd, uint64_t sample);
-
-/// A sample that others have taken, in a box of any shape.
-struct etd_frame {
-    double edge[3][3];       ///< vectors of the box, turned so that this is lower triangular [λ]
-    const int32_t *place[3]; ///< shape [count]: fractions of these vectors (box_fraction)
-    /// Shape [pairs]: those within r_maximum, each once, if the sample is an origin; pairs that are
-    /// not to be followed are left out.
-    const uint32_t *first, *second;
-    size_t pairs;
-};
-
-/// Add a sample. Fails: NO_MEMORY. Tested: test_measured.
-enum status mf_etd_add(struct etd *etd, const struct etd_frame *frame) MUST_USE;
 
 /// E and its standard error from the complete windows of independent replicas with the same grid.
 ///

@@ -26,7 +26,8 @@ static void fly(struct fluid *fluid, struct simulation *simulation, uint64_t see
 static void sample(struct etd *etd, struct simulation *simulation) {
     while (mf_etd_due(etd) != INT64_MAX) {
         assert_ok(mf_simulation_run(simulation, (uint64_t)mf_etd_due(etd) - simulation->step));
-        assert_ok(mf_etd_sample(etd, simulation));
+        const struct configuration now = mf_configuration_of(simulation);
+        assert_ok(mf_etd_sample(etd, &now));
     }
 }
 
