@@ -18,11 +18,6 @@ static const double most_bins = 100000;
 /// of at most so many waves unless given: their cost grows with beads times waves.
 enum { WAVE_BINS = 100, USUAL_WAVES = 10 };
 
-static struct box cube_of(double volume) {
-    const double edge = cbrt(volume);
-    return (struct box){3, {edge, edge, edge}};
-}
-
 // What the beads are ------------------------------------------------------------------------------
 
 static enum status find_composition(const struct mapping *mapping,
@@ -146,8 +141,10 @@ static enum status describe(struct measured *measured, const struct box_vectors 
                                                      .count = mapping->beads,
                                                      .box = *box,
                                                      .composition = &measured->pairs.composition,
+                                                     .molecules = measured->molecules.molecules,
                                                      .time_step = NAN,
                                                      .molecule = measured->pairs.molecule,
+                                                     .counts = &measured->counts,
                                                      .mass = measured->mass};
     return STATUS_OK;
 }
@@ -178,7 +175,11 @@ static void plan_waves(struct structure_factor_settings *waves, size_t beads, do
 
 static enum status begin_observables(struct measured *measured, const struct box_vectors *box) {
     struct measured_plan *const plan = &measured->plan;
+    const struct rdf_settings pairs = {.range = plan->range, .bins = plan->bins};
     TRY(describe(measured, box));
+    TRY(observe(measured, &mf_rdf_observable, &pairs));
+    if (measured->molecules.molecules)
+        TRY(observe(measured, &mf_rdf_intermolecular, &pairs));
     plan_waves(&plan->waves, measured->mapping->beads, box->volume);
     if (plan->waves.q_maximum > 0)
         TRY(observe(measured, &mf_structure_factor, &plan->waves));
@@ -215,18 +216,10 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     CHECK(find_shares(measured));
     CHECK(find_bins(measured, &box, first));
     CHECK(begin_observables(measured, &box));
-    const struct box cube = cube_of(box.volume);
+    const struct box cube = mf_box_cube(box.volume);
     if (plan->weighted.cutoff > 0)
         CHECK(mf_weighted_density_init(&measured->weighted, &plan->weighted, &cube, mapping->beads,
                                        0));
-    const struct rdf_bins bins = {.width = measured->pairs.range / (double)measured->pairs.bins,
-                                  .count = measured->pairs.bins};
-    CHECK(mf_rdf_init_endless(&measured->rdf.counted, &bins, &cube, &measured->pairs.composition));
-    if (measured->molecules.molecules) {
-        CHECK(mf_rdf_init_endless(&measured->intermolecular.counted, &bins, &cube,
-                                  &measured->pairs.composition));
-        measured->intermolecular.counted.intermolecular = &measured->molecules.molecules->topology;
-    }
 done:
     if (status != STATUS_OK)
         mf_measured_clear(measured);
@@ -249,8 +242,6 @@ static void clear_slots(struct measured *measured) {
 void mf_measured_clear(struct measured *measured) {
     clear_slots(measured);
     mf_memory_free(measured->molecule);
-    mf_rdf_clear(&measured->rdf.counted);
-    mf_rdf_clear(&measured->intermolecular.counted);
     mf_measured_molecules_clear(&measured->molecules);
     for (struct observable_use *use = measured->use; use->observable; use++) {
         mf_observable_end(use);
@@ -322,20 +313,12 @@ static enum status look_at(void *context, size_t task, void *result) {
     return find_pairs(measured, slot);
 }
 
-static void add_pairs(struct measured *measured, const struct measured_slot *slot) {
-    struct rdf *const rdf = &measured->rdf.counted;
-    double weight[COMPOSITION_MAX_PAIRS];
-    for (size_t pair = 0; pair < rdf->pairs; pair++)
-        weight[pair] = slot->box.volume / mf_box_volume(&rdf->box) / measured->share[pair];
-    const bool within = measured->pairs.within;
-    const size_t stride = measured->pairs.bins + 1;
-    mf_rdf_add(rdf, within ? slot->pairs.within : slot->pairs.counts, stride, weight);
-    if (within)
-        mf_rdf_add(&measured->intermolecular.counted, slot->pairs.counts, stride, weight);
-}
-
 /// What may not suit the box of a frame are waves.
 static enum status observe_frame(struct measured *measured, const struct measured_slot *slot) {
+    const struct frame_pairs *const pairs = &slot->pairs;
+    measured->counts =
+        (struct configuration_counts){measured->pairs.within ? pairs->within : pairs->counts,
+                                      pairs->counts, measured->pairs.bins + 1, measured->share};
     measured->configuration.box = slot->box;
     measured->configuration.fraction = slot->place;
     for (const struct observable_use *use = measured->use; use->observable; use++) {
@@ -353,7 +336,6 @@ static enum status add_one(struct measured *measured, const struct measured_slot
         measured->frames++;
         return mf_measured_molecules_add(&measured->molecules, &slot->beads);
     }
-    add_pairs(measured, slot);
     TRY(observe_frame(measured, slot));
     if (slot->weighted)
         TRY(mf_weighted_density_add(&measured->weighted, slot->weighted, measured->mapping->beads));
@@ -397,8 +379,21 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
     return STATUS_OK;
 }
 
+const void *mf_measured_state(const struct measured *measured,
+                              const struct observable *observable) {
+    const struct observable_use *use = measured->use;
+    while (use->observable && use->observable != observable)
+        use++;
+    return use->state;
+}
+
+const struct rdf *mf_measured_rdf(const struct measured *measured) {
+    const struct rdf_observed *const observed = mf_measured_state(measured, &mf_rdf_observable);
+    return &observed->counted;
+}
+
 struct box mf_measured_box(const struct measured *measured) {
-    return cube_of(mf_series_mean(&measured->volume));
+    return mf_box_cube(mf_series_mean(&measured->volume));
 }
 
 struct units mf_measured_units(int system) {

@@ -29,7 +29,7 @@ struct measured_plan {
 };
 
 /// Observables of a plan, beside those of molecules, at most.
-enum { MEASURED_MAX = 2 };
+enum { MEASURED_MAX = 4 };
 
 struct measured {
     struct measured_plan plan;
@@ -46,13 +46,13 @@ struct measured {
         double *weighted; ///< shape [beads]
     } * slot;             ///< one for each frame of a batch
     size_t slots;
-    struct rdf_observed rdf; ///< with `molecules` of all pairs that they do not exclude, else of
-                             ///< beads of different residues or molecules
-    struct rdf_observed intermolecular; ///< of beads of different molecules, with `molecules`
     struct measured_molecules molecules;
-    double *mass;                                ///< shape [beads] [u]; NULL: not all are known
-    struct configuration configuration;          ///< of the frame that is added
-    struct observable_use use[MEASURED_MAX + 1]; ///< ended by one without an observable
+    double *mass;                       ///< shape [beads] [u]; NULL: not all are known
+    struct configuration_counts counts; ///< of the frame that is added
+    struct configuration configuration; ///< the same
+    /// Ended by one without an observable. g(r) is with `molecules` of all pairs that they do not
+    /// exclude, else of beads of different residues or molecules.
+    struct observable_use use[MEASURED_MAX + 1];
     struct weighted_density weighted;
     struct measured_motion motion;
     struct frame_features features; ///< by which it is seen where equilibrium begins
@@ -72,6 +72,10 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
 /// test_measured.
 enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
                             size_t count) MUST_USE;
+
+/// The state of an observable that is measured, NULL of one that is not, and g(r), if there is one.
+const void *mf_measured_state(const struct measured *measured, const struct observable *observable);
+const struct rdf *mf_measured_rdf(const struct measured *measured);
 
 /// The least of the heights of these frames' boxes, and of `least` [nm].
 double mf_measured_height(const struct trajectory_frame *frames, size_t count, double least);

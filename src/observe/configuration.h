@@ -11,6 +11,14 @@
 #include "forces/molecules.h"
 #include "system/box_vectors.h"
 
+/// How many pairs there are at which distance, as a source has counted them.
+struct configuration_counts {
+    const uint64_t *all, *apart; ///< shape [pair types, stride]: of all beads that are pairs, and
+                                 ///< of those of different molecules
+    size_t stride;
+    const double *share; ///< shape [pair types]: of a type's pairs that `all` looks at
+};
+
 struct configuration {
     struct simulation *simulation; ///< whose it is; NULL: of a trajectory
     int dimensions, threads;       ///< threads: that a sample may take
@@ -28,8 +36,9 @@ struct configuration {
                               ///< the box (system/box_vectors.h); NULL of a simulation
     const uint32_t *molecule; ///< of these, shape [count]: pairs of one are none; NULL: those that
                               ///< topologies exclude are not
-    const double *mass;       ///< of these, shape [count] [u]; NULL: not all are known, or of a
-                              ///< simulation
+    const struct configuration_counts *counts; ///< in the bins of g(r); NULL of a simulation
+    const double *mass; ///< of these, shape [count] [u]; NULL: not all are known, or of a
+                        ///< simulation
 };
 
 /// What a simulation holds now, until it goes on. Tested: test_configuration.

@@ -94,38 +94,50 @@ enum status mf_rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const stru
     return mf_rdf_init_mixture(rdf, bins, box, &composition, list_cutoff, planned);
 }
 
+/// Room for `planned` samples, 0: as many as there will be.
+static enum status begin(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
+                         const struct composition *composition, size_t planned) {
+    const bool endless = planned == 0;
+    *rdf = (struct rdf){.bins = *bins,
+                        .box = *box,
+                        .particle_count = (size_t)mf_composition_particles(composition),
+                        .composition = *composition,
+                        .pairs = (size_t)mf_composition_pairs(composition),
+                        .planned = endless ? SIZE_MAX : planned,
+                        .blocks = endless            ? 2 * (size_t)BLOCKS
+                                  : planned < BLOCKS ? planned
+                                                     : BLOCKS,
+                        .each = endless};
+    TRY_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
+    TRY_ARRAY(rdf->block_samples, rdf->blocks);
+    return STATUS_OK;
+}
+
+/// The range is beyond that of the simulation's list.
+static enum status begin_own_list(struct rdf *rdf) {
+    const struct box *const box = &rdf->box;
+    if (mf_box_shortest(box) < 2 * mf_rdf_bins_range(&rdf->bins))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the box is too small for the RDF: its shortest edge %g is below "
+                              "twice the range %g; a larger box with more particles, or a "
+                              "shorter \"range\" of \"rdf\", would do",
+                              mf_box_shortest(box), mf_rdf_bins_range(&rdf->bins));
+    TRY(mf_particles_init(&rdf->own_particles, box, rdf->particle_count));
+    return mf_neighbours_init(&rdf->manifest, NEIGHBOURS_HALF, box, rdf->particle_count,
+                              mf_rdf_bins_range(&rdf->bins), 0);
+}
+
 enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                                 const struct composition *composition, double list_cutoff,
                                 size_t planned) {
     enum status status = STATUS_OK;
-    const size_t particle_count = (size_t)mf_composition_particles(composition);
-    *rdf = (struct rdf){.bins = *bins,
-                        .box = *box,
-                        .particle_count = particle_count,
-                        .composition = *composition,
-                        .pairs = (size_t)mf_composition_pairs(composition),
-                        .planned = planned,
-                        .blocks = planned < BLOCKS ? planned : BLOCKS,
-                        // A part in 10⁹ forgives a range that was rounded in another unit.
-                        .needs_own_list = mf_rdf_bins_range(bins) > list_cutoff * (1 + 1e-9)};
-    NEW_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
-    NEW_ARRAY(rdf->block_samples, rdf->blocks);
+    CHECK(begin(rdf, bins, box, composition, planned));
+    // A part in 10⁹ forgives a range that was rounded in another unit.
+    rdf->needs_own_list = mf_rdf_bins_range(bins) > list_cutoff * (1 + 1e-9);
     rdf->counted = (struct pair_histogram){bins->low, bins->width, bins->count, rdf->pairs, NULL};
     NEW_ARRAY(rdf->counted.counts, NEIGHBOURS_MAX_PARTS * pair_histogram_size(&rdf->counted));
-    if (rdf->needs_own_list) {
-        if (mf_box_shortest(box) < 2 * mf_rdf_bins_range(bins)) {
-            status =
-                mf_status_fail(STATUS_BAD_INPUT,
-                               "the box is too small for the RDF: its shortest edge %g is below "
-                               "twice the range %g; a larger box with more particles, or a "
-                               "shorter \"range\" of \"rdf\", would do",
-                               mf_box_shortest(box), mf_rdf_bins_range(bins));
-            goto done;
-        }
-        CHECK(mf_particles_init(&rdf->own_particles, box, particle_count));
-        CHECK(mf_neighbours_init(&rdf->manifest, NEIGHBOURS_HALF, box, particle_count,
-                                 mf_rdf_bins_range(bins), 0));
-    }
+    if (rdf->needs_own_list)
+        CHECK(begin_own_list(rdf));
 done:
     if (status != STATUS_OK)
         mf_rdf_clear(rdf);
@@ -134,18 +146,7 @@ done:
 
 enum status mf_rdf_init_endless(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                                 const struct composition *composition) {
-    enum status status = STATUS_OK;
-    *rdf = (struct rdf){.bins = *bins,
-                        .box = *box,
-                        .particle_count = (size_t)mf_composition_particles(composition),
-                        .composition = *composition,
-                        .pairs = (size_t)mf_composition_pairs(composition),
-                        .planned = SIZE_MAX,
-                        .blocks = 2 * (size_t)BLOCKS,
-                        .each = 1};
-    NEW_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
-    NEW_ARRAY(rdf->block_samples, rdf->blocks);
-done:
+    const enum status status = begin(rdf, bins, box, composition, 0);
     if (status != STATUS_OK)
         mf_rdf_clear(rdf);
     return status;
@@ -244,12 +245,17 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
     return STATUS_OK;
 }
 
-void mf_rdf_add(struct rdf *rdf, const uint64_t *counts, size_t stride, const double *weight) {
+void mf_rdf_add(struct rdf *rdf, const struct configuration *configuration) {
+    const struct configuration_counts *const counts = configuration->counts;
+    const uint64_t *const pairs = rdf->intermolecular ? counts->apart : counts->all;
+    const double volume = configuration->box.volume / mf_box_volume(&rdf->box);
     const size_t bins = rdf->bins.count;
     double *histogram = next_block(rdf);
-    for (size_t pair = 0; pair < rdf->pairs; pair++)
+    for (size_t pair = 0; pair < rdf->pairs; pair++) {
+        const double weight = volume / counts->share[pair];
         for (size_t k = 0; k < bins; k++)
-            histogram[pair * bins + k] += weight[pair] * (double)counts[pair * stride + k];
+            histogram[pair * bins + k] += weight * (double)pairs[pair * counts->stride + k];
+    }
 }
 
 size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans) {

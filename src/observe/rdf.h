@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "forces/pair.h"
+#include "observe/configuration.h"
 
 #include <stddef.h>
 
@@ -73,18 +74,15 @@ enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, co
                                 const struct composition *composition, double list_cutoff,
                                 size_t planned) MUST_USE;
 
-/// The same for as many samples as there will be, whose pairs are counted elsewhere (mf_rdf_add):
-/// in blocks of equal size, which are joined two by two when there are 40.
+/// The same for as many configurations as there will be, whose source counts pairs: in blocks of
+/// equal size, which are joined two by two when there are 40.
 enum status mf_rdf_init_endless(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                                 const struct composition *composition) MUST_USE;
 void mf_rdf_clear(struct rdf *rdf);
 
-/// Add a configuration of which others have counted the pairs: counts[p, k] weight[p], where a
-/// weight is 1 unless the volume is another than that of `box` (V/V_box, so that g is that of
-/// ⟨V S⟩), or some pairs are left out (all pairs over those that were looked at).
-/// @param[in] counts  shape [pairs, stride], of which the first bins.count of a row are read
-/// @param[in] weight  shape [pairs]
-void mf_rdf_add(struct rdf *rdf, const uint64_t *counts, size_t stride, const double *weight);
+/// Add a configuration by what its source has counted. Pairs have the weight V/V_box, so that g is
+/// that of ⟨V S⟩, and where some are left out that of all over those that were looked at.
+void mf_rdf_add(struct rdf *rdf, const struct configuration *configuration);
 
 /// What a force pass is to count for the next sample, cleared: for pair_law.histogram. NULL if the
 /// range exceeds that of the forces; then mf_rdf_sample makes a list of its own.

@@ -64,10 +64,21 @@ static bool uses_force(const struct rdf_settings *settings, const struct simulat
            mf_rdf_force_applies(setup->potential, setup->temperature);
 }
 
+/// Of a trajectory, whose pairs are counted in these bins.
+static enum status begin_frames(struct rdf_observed *observed, const struct rdf_settings *settings,
+                                const struct configuration *configuration) {
+    const struct box cube = mf_box_cube(configuration->box.volume);
+    const struct rdf_bins bins = {.width = settings->range / (double)settings->bins,
+                                  .count = (size_t)settings->bins};
+    return mf_rdf_init_endless(&observed->counted, &bins, &cube, configuration->composition);
+}
+
 static enum status begin(void *state, const void *settings,
                          const struct configuration *configuration,
                          const struct measure_plan *plan) {
     const struct simulation *const simulation = configuration->simulation;
+    if (simulation == NULL)
+        return begin_frames(state, settings, configuration);
     const struct simulation_setup *setup = &simulation->setup;
     const struct rdf_settings *s = settings;
     struct rdf_observed *observed = state;
@@ -89,14 +100,13 @@ static enum status begin(void *state, const void *settings,
 static enum status begin_intermolecular(void *state, const void *settings,
                                         const struct configuration *configuration,
                                         const struct measure_plan *plan) {
-    const struct simulation *const simulation = configuration->simulation;
     struct rdf_observed *observed = state;
     struct rdf_settings counted = *(const struct rdf_settings *)settings;
     counted.estimator = RDF_FORCE_NOT_USED;
-    if (simulation->particles.topology == NULL)
+    if (configuration->molecules == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "intermolecular_rdf: the scene has no molecules");
     TRY(begin(state, &counted, configuration, plan));
-    observed->counted.intermolecular = simulation->particles.topology;
+    observed->counted.intermolecular = &configuration->molecules->topology;
     return STATUS_OK;
 }
 
@@ -127,6 +137,10 @@ static enum status counted(void *state, const struct configuration *configuratio
 static enum status sample(void *state, const struct configuration *configuration) {
     struct simulation *const simulation = configuration->simulation;
     struct rdf_observed *observed = state;
+    if (configuration->counts) {
+        mf_rdf_add(&observed->counted, configuration);
+        return STATUS_OK;
+    }
     if (observed->counted.planned > 0)
         TRY(mf_rdf_sample(&observed->counted, &simulation->particles, &simulation->neighbours));
     return sample_force(observed, simulation);
@@ -276,6 +290,7 @@ const struct observable mf_rdf_observable = {
     .name = "rdf",
     .summary = "g(r)",
     .always = true,
+    .of_places = true,
     .fields = fields,
     .settings_size = sizeof(struct rdf_settings),
     .state_size = sizeof(struct rdf_observed),
@@ -325,6 +340,7 @@ static const char *const intermolecular_files[] = {"intermolecular_rdf.tsv",
 const struct observable mf_rdf_intermolecular = {
     .name = "intermolecular_rdf",
     .summary = "g(r) of beads of different molecules, normalised as that of all",
+    .of_places = true,
     .fields = intermolecular_fields,
     .settings_size = sizeof(struct rdf_settings),
     .state_size = sizeof(struct rdf_observed),

@@ -34,3 +34,8 @@ double mf_box_shell_volume(const struct box *box, double low, double high) {
         return M_PI * (high - low) * (high + low);
     return 4 * M_PI / 3 * (high - low) * (high * high + high * low + low * low);
 }
+
+struct box mf_box_cube(double volume) {
+    const double edge = cbrt(volume);
+    return (struct box){3, {edge, edge, edge}};
+}

@@ -26,6 +26,9 @@ double mf_box_longest(const struct box *box);
 /// The same shape with `volume_share` times the volume.
 struct box mf_box_scaled(const struct box *box, double volume_share);
 
+/// A cube of that volume.
+struct box mf_box_cube(double volume);
+
 /// Volume of the shell (ring) low ≤ r < high: exact [λ^d].
 double mf_box_shell_volume(const struct box *box, double low, double high);
 

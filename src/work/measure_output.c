@@ -112,7 +112,7 @@ static double share_inside(const struct measured *measured) {
 /// Kirkwood and Buff's integral of what is of one type.
 static enum status write_kirkwood_buff(const struct measure_result *result,
                                        struct json_writer *writer) {
-    const struct rdf *const rdf = &result->measured->rdf.counted;
+    const struct rdf *const rdf = mf_measured_rdf(result->measured);
     const struct box box = mf_measured_box(result->measured);
     OWNED double *g = NULL, *error = NULL;
     if (composition_is_mixed(&rdf->composition))
@@ -264,7 +264,8 @@ done:
 static void write_errors(const struct measure_result *result, struct json_writer *writer) {
     static const double independent = 1.5;
     double correlation;
-    if (find_correlation(&result->measured->rdf.counted, &correlation) == STATUS_OK &&
+    if (!result->measured->in_vacuum &&
+        find_correlation(mf_measured_rdf(result->measured), &correlation) == STATUS_OK &&
         correlation < independent)
         mf_json_write_text(writer, "errors_of", mf_targets_errors[TARGET_ERRORS_OF_SAMPLES]);
 }

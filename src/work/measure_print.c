@@ -140,7 +140,8 @@ static void print_pairs(struct progress *progress, const struct measure_result *
                       measured->pairs.within     ? ", without pairs that molecules exclude"
                       : measured->pairs.molecule ? ", without pairs of one molecule or residue"
                                                  : "");
-    if (mf_rdf_observable.assess(&measured->rdf, NULL) != STATUS_OK)
+    if (mf_rdf_observable.assess(mf_measured_state(measured, &mf_rdf_observable), NULL) !=
+        STATUS_OK)
         mf_progress_print(progress, "mesofit: warning: %s", mf_status_message());
     if (measured->plan.waves.q_maximum > 0)
         mf_progress_print(progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",

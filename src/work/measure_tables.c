@@ -50,14 +50,12 @@ static enum status write_motion(const struct measure_result *result) {
     return STATUS_OK;
 }
 
-/// g(r) between molecules, and what observables have of them.
+/// What observables have of molecules.
 static enum status write_molecules(const struct measure_result *result,
                                    const struct observable_results *results) {
     const struct measured *const measured = result->measured;
     if (measured->molecules.molecules == NULL)
         return STATUS_OK;
-    if (!measured->in_vacuum)
-        TRY(mf_rdf_observable.write(&measured->intermolecular, results));
     for (const struct observable_use *use = measured->molecules.use; use->observable; use++)
         TRY(use->observable->write(use->state, results));
     return STATUS_OK;
@@ -67,8 +65,6 @@ enum status mf_measure_tables_write(const struct measure_result *result) {
     const struct simulation_setup setup = make_setup(result);
     const struct measure_plan plan = {.samples = (int64_t)result->measured->frames};
     const struct observable_results results = {&setup, &plan, &result->units, result->folder, NULL};
-    if (!result->measured->in_vacuum)
-        TRY(mf_rdf_observable.write(&result->measured->rdf, &results));
     TRY(write_molecules(result, &results));
     if (!result->measured->in_vacuum && result->measured->plan.weighted.cutoff > 0)
         TRY(mf_weighted_density_write(&result->measured->weighted, &results));

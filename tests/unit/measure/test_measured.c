@@ -93,8 +93,9 @@ static struct measured_plan make_plan(double range, int64_t bins, double window)
 }
 
 static const struct structure_factor *factor_of(const struct measured *measured) {
-    assert_ptr_equal(measured->use[0].observable, &mf_structure_factor);
-    return &((const struct structure_factor_state *)measured->use[0].state)->factor;
+    const struct structure_factor_state *const state =
+        mf_measured_state(measured, &mf_structure_factor);
+    return &state->factor;
 }
 
 /// Independent beads have S = 1, beads of two types S_ab = 0, at every q. 400 numbers beyond 5 of
@@ -140,7 +141,7 @@ static void test_measured_g_is_one_when_an_ideal_gas_is_in_a_box_that_changes(vo
     plan.waves.q_maximum = 12;
     measure(film, &plan, 7, &measured);
     assert_waves_of_a_gas(&measured);
-    assert_ok(mf_rdf_result(&measured.rdf.counted, 1, g, error));
+    assert_ok(mf_rdf_result(mf_measured_rdf(&measured), 1, g, error));
     for (int n = 0; n < 3 * BINS; n++) {
         if (n % BINS > 2) // of few pairs an error is not known
             assert_close(g[n], 1, 4.5 * error[n]);
@@ -351,7 +352,7 @@ static void test_measured_bits_are_the_same_when_threads_and_batches_differ(void
     for (int threads = 2; threads <= 3; threads++) {
         plan.threads = plan.motion.threads = threads;
         measure(film, &plan, (size_t)threads * 4, &other);
-        const struct rdf *a = &one.rdf.counted, *b = &other.rdf.counted;
+        const struct rdf *a = mf_measured_rdf(&one), *b = mf_measured_rdf(&other);
         assert_memory_equal(a->histogram, b->histogram,
                             a->blocks * a->pairs * a->bins.count * sizeof *a->histogram);
         const struct motion *m = &one.motion.motion, *n = &other.motion.motion;
@@ -421,8 +422,8 @@ static void test_measured_errors_are_those_of_counts_when_frames_are_independent
         }
     const struct measured_plan plan = make_plan(0.9, BINS, 1);
     measure(film, &plan, 4, &measured);
-    assert_ok(mf_rdf_result(&measured.rdf.counted, 1, g, error));
-    const struct rdf *rdf = &measured.rdf.counted;
+    assert_ok(mf_rdf_result(mf_measured_rdf(&measured), 1, g, error));
+    const struct rdf *rdf = mf_measured_rdf(&measured);
     assert_int_equal(rdf->each, 32); // 700 frames in 21 blocks and a part
     for (size_t k = BINS / 3; k < BINS; k++) {
         const double ideal = mf_rdf_ideal_pairs(&rdf->bins, k, &rdf->box, BEADS);
