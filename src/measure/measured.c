@@ -127,7 +127,7 @@ bool mf_measured_fits(const struct measured *measured, const struct measured_pla
 }
 
 /// What is known of beads in all frames.
-static enum status describe(struct measured *measured, const struct box_vectors *box) {
+static enum status describe(struct measured *measured) {
     const struct mapping *const mapping = measured->mapping;
     bool known = true;
     for (size_t k = 0; k < mapping->beads; k++)
@@ -139,7 +139,6 @@ static enum status describe(struct measured *measured, const struct box_vectors 
     measured->configuration = (struct configuration){.dimensions = 3,
                                                      .threads = measured->plan.threads,
                                                      .count = mapping->beads,
-                                                     .box = *box,
                                                      .composition = &measured->pairs.composition,
                                                      .molecules = measured->molecules.molecules,
                                                      .time_step = NAN,
@@ -149,10 +148,10 @@ static enum status describe(struct measured *measured, const struct box_vectors 
     return STATUS_OK;
 }
 
-/// Begin to measure an observable, after those that are.
+/// Begin to measure an observable, after those that are. @param[in] settings  NULL: the defaults
 static enum status observe(struct measured *measured, const struct observable *observable,
                            const void *settings) {
-    static const struct measure_plan plan = {.every = 1};
+    static const struct measure_plan plan = {.equilibration = -1, .every = 1};
     struct observable_use *use = measured->use;
     while (use->observable)
         use++;
@@ -160,7 +159,9 @@ static enum status observe(struct measured *measured, const struct observable *o
     use->settings = mf_memory_zeroed(1, observable->settings_size);
     if (use->settings == NULL)
         return STATUS_NO_MEMORY;
-    memcpy(use->settings, settings, observable->settings_size);
+    mf_fields_set_defaults(observable->fields, use->settings);
+    if (settings)
+        memcpy(use->settings, settings, observable->settings_size);
     return mf_observable_begin(use, &measured->configuration, &plan);
 }
 
@@ -176,7 +177,7 @@ static void plan_waves(struct structure_factor_settings *waves, size_t beads, do
 static enum status begin_observables(struct measured *measured, const struct box_vectors *box) {
     struct measured_plan *const plan = &measured->plan;
     const struct rdf_settings pairs = {.range = plan->range, .bins = plan->bins};
-    TRY(describe(measured, box));
+    measured->configuration.box = *box;
     TRY(observe(measured, &mf_rdf_observable, &pairs));
     if (measured->molecules.molecules)
         TRY(observe(measured, &mf_rdf_intermolecular, &pairs));
@@ -211,6 +212,7 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     CHECK(find_composition(mapping, &measured->pairs.composition));
     CHECK(find_molecules(measured));
     CHECK(take_molecules(measured));
+    CHECK(describe(measured));
     if (measured->in_vacuum)
         goto done;
     CHECK(find_shares(measured));
@@ -313,14 +315,20 @@ static enum status look_at(void *context, size_t task, void *result) {
     return find_pairs(measured, slot);
 }
 
-/// What may not suit the box of a frame are waves.
-static enum status observe_frame(struct measured *measured, const struct measured_slot *slot) {
+/// What observables are told of a frame in a box.
+static void describe_frame(struct measured *measured, const struct measured_slot *slot) {
     const struct frame_pairs *const pairs = &slot->pairs;
     measured->counts =
         (struct configuration_counts){measured->pairs.within ? pairs->within : pairs->counts,
                                       pairs->counts, measured->pairs.bins + 1, measured->share};
     measured->configuration.box = slot->box;
     measured->configuration.fraction = slot->place;
+}
+
+/// What may not suit the box of a frame are waves.
+static enum status observe_frame(struct measured *measured, const struct measured_slot *slot) {
+    if (measured->molecules.molecules)
+        mf_measured_molecules_place(&measured->molecules, &slot->beads);
     for (const struct observable_use *use = measured->use; use->observable; use++) {
         const enum status status = use->observable->sample(use->state, &measured->configuration);
         if (status == STATUS_BAD_INPUT)
@@ -328,21 +336,19 @@ static enum status observe_frame(struct measured *measured, const struct measure
                                     slot->beads.file, slot->beads.number);
         TRY(status);
     }
+    measured->frames++;
     return STATUS_OK;
 }
 
 static enum status add_one(struct measured *measured, const struct measured_slot *slot) {
-    if (measured->in_vacuum) {
-        measured->frames++;
-        return mf_measured_molecules_add(&measured->molecules, &slot->beads);
-    }
+    if (measured->in_vacuum)
+        return observe_frame(measured, slot);
+    describe_frame(measured, slot);
     TRY(observe_frame(measured, slot));
     if (slot->weighted)
         TRY(mf_weighted_density_add(&measured->weighted, slot->weighted, measured->mapping->beads));
-    measured->frames++;
     TRY(mf_frame_features_add(&measured->features, &measured->pairs, &slot->pairs,
                               slot->box.volume));
-    TRY(mf_measured_molecules_add(&measured->molecules, &slot->beads));
     TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &measured->configuration));
     return mf_series_add(&measured->volume, slot->box.volume);
 }
@@ -354,13 +360,22 @@ static enum status begin_motion(struct measured *measured, const struct trajecto
                                     first, &box, measured->plan.height);
 }
 
-/// Times are printed for frames at equal intervals.
+/// Bonds and sizes, of molecules that a file tells of. Times are printed for frames at equal
+/// intervals.
 static enum status begin_molecules(struct measured *measured, const struct trajectory_frame *frames,
                                    size_t count) {
+    const struct molecules *const molecules = measured->molecules.molecules;
     const bool timed = count > 1 && !measured->plan.motion.leave_out;
-    const double interval = timed ? frames[1].time - frames[0].time : NAN;
     TRY(mf_mapping_apply(measured->mapping, frames, &measured->slot[0].beads));
-    return mf_measured_molecules_start(&measured->molecules, &measured->slot[0].beads, interval);
+    TRY(mf_measured_molecules_start(&measured->molecules, &measured->slot[0].beads));
+    measured->configuration.particles = &measured->molecules.particles;
+    measured->configuration.time_step = timed ? frames[1].time - frames[0].time : NAN;
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const struct bonded_settings settings = {.bins = mf_bonded_kinds[order]->fine};
+        if (molecules->groups[order] > 0)
+            TRY(observe(measured, mf_bonded_distribution_of(order), &settings));
+    }
+    return observe(measured, &mf_molecule_sizes, NULL);
 }
 
 enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
@@ -376,6 +391,25 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
     TRY(mf_parallel_try(&tasks));
     for (size_t k = 0; k < count; k++)
         TRY(add_one(measured, &measured->slot[k]));
+    return STATUS_OK;
+}
+
+void mf_measured_end(struct measured *measured) {
+    mf_measured_motion_end(&measured->motion);
+    for (const struct observable_use *use = measured->use; use->observable; use++)
+        for (int order = 0; order < BONDED_KINDS; order++)
+            if (use->observable == mf_bonded_distribution_of(order))
+                mf_bonded_distribution_join(use->state);
+}
+
+enum status mf_measured_moments(const struct measured *measured, int order, int group,
+                                struct bonded_moments *moments) {
+    const void *const state = mf_measured_state(measured, mf_bonded_distribution_of(order));
+    struct bonded_bins bins;
+    OWNED double *counts = mf_bonded_distribution_counts(state, group, &bins);
+    if (counts == NULL)
+        return STATUS_NO_MEMORY;
+    *moments = mf_bonded_distribution_moments(&bins, counts);
     return STATUS_OK;
 }
 

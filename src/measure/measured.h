@@ -10,7 +10,9 @@
 #include "measure/frame_pairs.h"
 #include "measure/measured_molecules.h"
 #include "measure/measured_motion.h"
+#include "observe/bonded_distribution.h"
 #include "observe/density_profile.h"
+#include "observe/measure.h"
 #include "observe/rdf_observable.h"
 #include "observe/structure_factor.h"
 #include "trajectory/mapping.h"
@@ -28,8 +30,8 @@ struct measured_plan {
     int threads;
 };
 
-/// Observables of a plan, beside those of molecules, at most.
-enum { MEASURED_MAX = 4 };
+/// Observables at most: g(r) in all and between molecules, waves, profile, sizes, and all orders.
+enum { MEASURED_MAX = 5 + (int)BONDED_KINDS };
 
 struct measured {
     struct measured_plan plan;
@@ -72,6 +74,14 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
 /// test_measured.
 enum status mf_measured_add(struct measured *measured, const struct trajectory_frame *frames,
                             size_t count) MUST_USE;
+
+/// When all frames have been added: the mean interval, and bins as wide as distributions ask for.
+void mf_measured_end(struct measured *measured);
+
+/// How wide the distribution of a group is, of an order of which there are groups.
+/// Fails: NO_MEMORY.
+enum status mf_measured_moments(const struct measured *measured, int order, int group,
+                                struct bonded_moments *moments) MUST_USE;
 
 /// The state of an observable that is measured, NULL of one that is not, and g(r), if there is one.
 const void *mf_measured_state(const struct measured *measured, const struct observable *observable);

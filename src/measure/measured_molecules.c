@@ -3,7 +3,6 @@
 
 #include "base/memory.h"
 #include "forces/bonded.h"
-#include "observe/bonded_distribution.h"
 
 #include <math.h>
 #include <string.h>
@@ -45,8 +44,7 @@ enum status mf_measured_molecules_begin(struct measured_molecules *measured,
                                         const struct measured_molecules_plan *plan,
                                         const struct mapping *mapping,
                                         const struct composition *composition) {
-    *measured = (struct measured_molecules){
-        .molecules = plan->molecules, .mapping = mapping, .composition = composition};
+    *measured = (struct measured_molecules){.molecules = plan->molecules, .mapping = mapping};
     TRY(mf_molecule_match(&measured->match, &plan->molecules->topology, plan->types, mapping,
                           composition, plan->file));
     TRY(plan_walks(measured));
@@ -69,8 +67,7 @@ static enum status add_masses(struct measured_molecules *measured, struct partic
     return STATUS_OK;
 }
 
-/// A configuration with the beads where the mapping has them.
-static enum status make_configuration(struct measured_molecules *measured, double interval) {
+static enum status make_particles(struct measured_molecules *measured) {
     const struct topology *topology = &measured->molecules->topology;
     const struct box box = {3, {without_end, without_end, without_end}};
     struct particles *particles = &measured->particles;
@@ -79,11 +76,6 @@ static enum status make_configuration(struct measured_molecules *measured, doubl
     for (uint32_t id = 0; id < topology->particles; id++)
         particles->id[measured->match.bead[id]] = id;
     mf_particles_label_places(particles);
-    measured->configuration = (struct configuration){.dimensions = 3,
-                                                     .composition = measured->composition,
-                                                     .molecules = measured->molecules,
-                                                     .time_step = interval,
-                                                     .particles = particles};
     return add_masses(measured, particles);
 }
 
@@ -109,23 +101,14 @@ static void make_whole(struct measured_molecules *measured, const struct traject
     }
 }
 
-static void place_beads(struct measured_molecules *measured, const struct trajectory_frame *beads) {
+void mf_measured_molecules_place(struct measured_molecules *measured,
+                                 const struct trajectory_frame *beads) {
     const struct topology *topology = &measured->molecules->topology;
     double reciprocal[3][3];
     mf_frame_reciprocal(beads, reciprocal);
     for (int k = 0; k < topology->kinds; k++)
         for (int64_t m = 0; m < topology->kind[k].count; m++)
             make_whole(measured, beads, reciprocal, k, m);
-}
-
-enum status mf_measured_molecules_add(struct measured_molecules *measured,
-                                      const struct trajectory_frame *beads) {
-    if (measured->configuration.particles == NULL)
-        return STATUS_OK;
-    place_beads(measured, beads);
-    for (const struct observable_use *use = measured->use; use->observable; use++)
-        TRY(use->observable->sample(use->state, &measured->configuration));
-    return STATUS_OK;
 }
 
 // Beginning ---------------------------------------------------------------------------------------
@@ -175,73 +158,15 @@ static void find_rest(struct measured_molecules *measured) {
             rest_at(&molecules->group[BONDED_BOND][g].curve, found[g].sum / found[g].count);
 }
 
-static const struct observable *find_observable(const char *name) {
-    size_t k = 0;
-    while (strcmp(mf_observables[k]->name, name) != 0)
-        k++;
-    return mf_observables[k];
-}
-
-/// @param[in] bins  of what is distributed, or 0
-static enum status add_observable(struct measured_molecules *measured,
-                                  const struct observable *observable, int64_t bins,
-                                  struct observable_use *use) {
-    const struct measure_plan plan = {.equilibration = -1, .samples = 0, .every = 1};
-    use->observable = observable;
-    use->settings = mf_memory_zeroed(1, observable->settings_size);
-    TRY(use->settings ? STATUS_OK : STATUS_NO_MEMORY);
-    mf_fields_set_defaults(observable->fields, use->settings);
-    if (bins > 0)
-        ((struct bonded_settings *)use->settings)->bins = bins;
-    return mf_observable_begin(use, &measured->configuration, &plan);
-}
-
 enum status mf_measured_molecules_start(struct measured_molecules *measured,
-                                        const struct trajectory_frame *beads, double interval) {
-    struct observable_use *use = measured->use;
-    if (measured->molecules == NULL)
-        return STATUS_OK;
-    TRY(make_configuration(measured, interval));
-    place_beads(measured, beads);
+                                        const struct trajectory_frame *beads) {
+    TRY(make_particles(measured));
+    mf_measured_molecules_place(measured, beads);
     find_rest(measured);
-    for (int order = 0; order < BONDED_KINDS; order++)
-        if (measured->molecules->groups[order] > 0)
-            TRY(add_observable(measured, mf_bonded_distribution_of(order),
-                               mf_bonded_kinds[order]->fine, use++));
-    return add_observable(measured, find_observable("molecule_sizes"), 0, use);
-}
-
-static const struct observable_use *find_use(const struct measured_molecules *measured, int order) {
-    const struct observable_use *use = measured->use;
-    while (use->observable && use->observable != mf_bonded_distribution_of(order))
-        use++;
-    return use->observable ? use : NULL;
-}
-
-void mf_measured_molecules_end(struct measured_molecules *measured) {
-    for (int order = 0; order < BONDED_KINDS; order++) {
-        const struct observable_use *use = find_use(measured, order);
-        if (use)
-            mf_bonded_distribution_join(use->state);
-    }
-}
-
-enum status mf_measured_molecules_moments(const struct measured_molecules *measured, int order,
-                                          int group, struct bonded_moments *moments) {
-    struct bonded_bins bins;
-    double *counts = mf_bonded_distribution_counts(find_use(measured, order)->state, group, &bins);
-    if (counts == NULL)
-        return STATUS_NO_MEMORY;
-    *moments = mf_bonded_distribution_moments(&bins, counts);
-    mf_memory_free(counts);
     return STATUS_OK;
 }
 
 void mf_measured_molecules_clear(struct measured_molecules *measured) {
-    for (struct observable_use *use = measured->use; use->observable; use++) {
-        mf_observable_end(use);
-        mf_memory_free(use->settings);
-    }
     mf_particles_clear(&measured->particles);
     mf_memory_free(measured->order);
     mf_memory_free(measured->parent);

@@ -172,3 +172,4 @@ enum status mf_observable_table(const struct observable_results *results, const 
 
 extern const struct observable mf_rdf_observable, mf_etd_observable, mf_motion_observable;
 extern const struct observable mf_thermodynamics_observable, mf_force_covariance_observable;
+extern const struct observable mf_molecule_sizes;

@@ -193,9 +193,9 @@ void mf_measure_output_write_masses(const struct measure_result *result,
     mf_json_end(writer);
 }
 
-static void write_molecules(const struct measure_result *result, struct json_writer *writer) {
+static void write_observables(const struct measure_result *result, struct json_writer *writer) {
     const struct observable_results results = {.units = &result->units};
-    const struct observable_use *use = result->measured->molecules.use;
+    const struct observable_use *use = result->measured->use;
     for (; use->observable; use++)
         if (use->observable->write_summary)
             use->observable->write_summary(use->state, &results, writer);
@@ -217,7 +217,7 @@ static enum status write_summary(const struct measure_result *result) {
     if (!result->measured->in_vacuum)
         write_density(result, writer);
     write_motion(result, writer);
-    write_molecules(result, writer);
+    write_observables(result, writer);
     if (result->measured->plan.weighted.cutoff > 0 && !result->measured->in_vacuum)
         mf_weighted_density_write_summary(&result->measured->weighted, writer);
     const enum status status =

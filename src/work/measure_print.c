@@ -100,7 +100,7 @@ static void print_order(struct progress *progress, const struct measure_result *
 
 static void print_molecules(struct progress *progress, const struct measure_result *result) {
     const struct observable_results results = {.units = &result->units};
-    const struct observable_use *use = result->measured->molecules.use;
+    const struct observable_use *use = result->measured->use;
     char line[256];
     if (result->kinds)
         print_order(progress, result);
@@ -119,7 +119,7 @@ static enum status print_constraints(struct progress *progress,
     for (int order = 0; molecules && order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
             struct bonded_moments found;
-            TRY(mf_measured_molecules_moments(&result->measured->molecules, order, g, &found));
+            TRY(mf_measured_moments(result->measured, order, g, &found));
             if (!mf_bonded_distribution_is_constrained(order, &found))
                 continue;
             const char *const unit = mf_bonded_kinds[order]->is_length ? "nm" : "degrees";

@@ -321,8 +321,7 @@ static enum status find_equilibrium(struct run *run) {
 }
 
 static enum status write_results(struct run *run, bool interrupted) {
-    mf_measured_motion_end(&run->measured.motion);
-    mf_measured_molecules_end(&run->measured.molecules);
+    mf_measured_end(&run->measured);
     const struct measure_result result = {.request = run->request,
                                           .frames = &run->frames,
                                           .mapping = &run->mapping,

@@ -50,22 +50,10 @@ static enum status write_motion(const struct measure_result *result) {
     return STATUS_OK;
 }
 
-/// What observables have of molecules.
-static enum status write_molecules(const struct measure_result *result,
-                                   const struct observable_results *results) {
-    const struct measured *const measured = result->measured;
-    if (measured->molecules.molecules == NULL)
-        return STATUS_OK;
-    for (const struct observable_use *use = measured->molecules.use; use->observable; use++)
-        TRY(use->observable->write(use->state, results));
-    return STATUS_OK;
-}
-
 enum status mf_measure_tables_write(const struct measure_result *result) {
     const struct simulation_setup setup = make_setup(result);
     const struct measure_plan plan = {.samples = (int64_t)result->measured->frames};
     const struct observable_results results = {&setup, &plan, &result->units, result->folder, NULL};
-    TRY(write_molecules(result, &results));
     if (!result->measured->in_vacuum && result->measured->plan.weighted.cutoff > 0)
         TRY(mf_weighted_density_write(&result->measured->weighted, &results));
     for (const struct observable_use *use = result->measured->use; use->observable; use++)
@@ -116,7 +104,7 @@ static enum status write_wide_box(const struct measure_result *result, struct js
     double longest = 0, edge[3];
     for (int g = 0; g < molecules->groups[BONDED_BOND]; g++) {
         struct bonded_moments found;
-        TRY(mf_measured_molecules_moments(&result->measured->molecules, BONDED_BOND, g, &found));
+        TRY(mf_measured_moments(result->measured, BONDED_BOND, g, &found));
         longest = fmax(longest, found.mean);
     }
     const double beads = share_of_alone(result) * (double)result->mapping->beads;
