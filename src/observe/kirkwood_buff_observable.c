@@ -162,7 +162,7 @@ static void write_summary(const void *state, const struct observable_results *re
         write_isothermal(s, results, value, error, writer);
     }
     mf_json_write_quantity(writer, "kirkwood_buff_q_maximum", "1/lambda", s->waves.q_maximum);
-    mf_json_write_number(writer, "kirkwood_buff_waves", (double)s->waves.waves.waves.vectors);
+    mf_json_write_number(writer, "kirkwood_buff_waves", (double)s->waves.waves.vectors);
 }
 
 static void print(const void *state, const struct observable_results *results, char *line,

@@ -42,7 +42,7 @@ static double squared_length(const struct density_waves *waves, size_t k) {
 /// Weights of the intercept of least squares, Σ (S − S_0 − c q²)².
 static enum status find_weights(struct kirkwood_buff_waves *kb) {
     static const double same = 1e-6;
-    const struct density_waves *waves = &kb->waves.waves;
+    const struct density_waves *waves = &kb->waves;
     const double count = (double)waves->vectors;
     double first = 0, second = 0;
     for (size_t k = 0; k < waves->vectors; k++) {
@@ -65,29 +65,34 @@ static enum status find_weights(struct kirkwood_buff_waves *kb) {
 enum status mf_kirkwood_buff_waves_init(struct kirkwood_buff_waves *kb, const struct box *box,
                                         const struct composition *composition, size_t count,
                                         const struct topology *topology, double q_maximum) {
-    struct composition components;
+    const struct box_vectors vectors = mf_box_vectors_of(box);
+    const struct composition *const components = &kb->sites.components;
     *kb = (struct kirkwood_buff_waves){.box = *box};
-    TRY(mf_components_find(&components, composition, count, topology));
+    TRY(mf_component_sites_init(&kb->sites, box->dimensions, composition, count, topology));
     kb->q_maximum = mf_kirkwood_buff_waves_maximum(
-        box, (size_t)mf_composition_particles(&components), count, topology, q_maximum);
-    TRY(mf_particle_waves_init(&kb->waves, box, composition, count, topology, kb->q_maximum, 1));
-    TRY_ARRAY(kb->weight, kb->waves.waves.vectors);
+        box, (size_t)mf_composition_particles(components), count, topology, q_maximum);
+    const struct density_waves_plan plan = {
+        .composition = *components, .q_maximum = kb->q_maximum, .bins = 1};
+    TRY(mf_density_waves_init(&kb->waves, &plan));
+    TRY(mf_density_waves_list(&kb->waves, &vectors));
+    TRY_ARRAY(kb->weight, kb->waves.vectors);
     return find_weights(kb);
 }
 
 void mf_kirkwood_buff_waves_clear(struct kirkwood_buff_waves *kb) {
-    mf_particle_waves_clear(&kb->waves);
+    mf_density_waves_clear(&kb->waves);
+    mf_component_sites_clear(&kb->sites);
     mf_memory_free(kb->weight);
     *kb = (struct kirkwood_buff_waves){0};
 }
 
 const struct composition *mf_kirkwood_buff_waves_components(const struct kirkwood_buff_waves *kb) {
-    return &kb->waves.sites.components;
+    return &kb->sites.components;
 }
 
 /// Σ weight Re ρ_a ρ_b*.
 static double extrapolate(const struct kirkwood_buff_waves *kb, const int type[2]) {
-    const struct density_waves *waves = &kb->waves.waves;
+    const struct density_waves *waves = &kb->waves;
     const size_t types = (size_t)waves->plan.composition.types;
     double sum = 0;
     for (size_t k = 0; k < waves->vectors; k++) {
@@ -98,11 +103,22 @@ static double extrapolate(const struct kirkwood_buff_waves *kb, const int type[2
     return sum;
 }
 
+static void find_waves(struct kirkwood_buff_waves *kb, const struct particles *particles,
+                       int threads) {
+    struct density_places places = {{NULL}, {0}};
+    mf_component_sites_find(&kb->sites, particles);
+    for (int d = 0; d < kb->box.dimensions; d++) {
+        places.place[d] = kb->sites.site[d];
+        places.unit[d] = 2 * M_PI / kb->box.length[d];
+    }
+    mf_density_waves_find(&kb->waves, &places, threads);
+}
+
 void mf_kirkwood_buff_waves_take(struct kirkwood_buff_waves *kb, const struct particles *particles,
                                  int threads, double *integral) {
     const struct composition *components = mf_kirkwood_buff_waves_components(kb);
     const double volume = mf_box_volume(&kb->box);
-    mf_particle_waves_find(&kb->waves, particles, threads);
+    find_waves(kb, particles, threads);
     for (int pair = 0; pair < mf_composition_pairs(components); pair++) {
         int type[2];
         mf_composition_pair_types(components, pair, type);

@@ -19,10 +19,12 @@
 /// Statistical error: that of S(0) of n waves is 2.5 S/sqrt(n) a configuration.
 #pragma once
 
-#include "observe/particle_waves.h"
+#include "observe/density_waves.h"
+#include "system/component_sites.h"
 
 struct kirkwood_buff_waves {
-    struct particle_waves waves;
+    struct density_waves waves;
+    struct component_sites sites;
     struct box box;
     double q_maximum; ///< [1/λ]
     double *weight;   ///< shape [waves]: the intercept is Σ weight S
