@@ -66,6 +66,7 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
     *frames = (struct frames){.plan = *plan,
                               .structure = structure,
                               .structure_file = structure_file,
+                              .time.columns = 1,
                               .slots = (size_t)(FRAMES_A_THREAD * plan->threads)};
     frames->slots = frames->slots < MIN_SLOTS ? MIN_SLOTS : frames->slots;
     NEW_ARRAY(frames->source, plan->files);
@@ -94,7 +95,7 @@ void mf_frames_close(struct frames *frames) {
         mf_frame_clear(&frames->frame[k]);
     mf_memory_free(frames->frame);
     mf_memory_free(frames->source);
-    mf_series_clear(&frames->time);
+    mf_sample_series_clear(&frames->time);
     mf_source_free(&frames->notes);
     *frames = (struct frames){0};
 }
@@ -158,7 +159,7 @@ size_t mf_frames_expected(const struct frames *frames, size_t most) {
     for (size_t k = 0; k <= frames->at && k < frames->plan.files; k++)
         read += frames->source[k].read;
     const size_t left_out = read - frames->time.count; // before the first, or doubled
-    const double begin = frames->time.value[0], interval = frames->time.value[1] - begin;
+    const double begin = frames->time.values[0], interval = frames->time.values[1] - begin;
     const double apart = fmax(interval, plan->every);
     const double wanted = ((double)most + (double)plan->skip) * apart / interval;
     const uint64_t count = count_frames(frames, left_out + (uint64_t)ceil(fmin(wanted, 1e15)));
@@ -178,12 +179,12 @@ static bool was_seen(const struct frames *frames, double time) {
     size_t low = 0, high = frames->time.count; // of the first that is not before
     while (low < high) {
         const size_t middle = (low + high) / 2;
-        if (frames->time.value[middle] < time - tolerance)
+        if (frames->time.values[middle] < time - tolerance)
             low = middle + 1;
         else
             high = middle;
     }
-    return low < frames->time.count && frames->time.value[low] <= time + tolerance;
+    return low < frames->time.count && frames->time.values[low] <= time + tolerance;
 }
 
 static enum status check_known(const struct frames *frames, const struct trajectory_frame *frame) {
@@ -198,11 +199,11 @@ static enum status check_known(const struct frames *frames, const struct traject
 /// Whether a frame is the next in time, or a doubled one.
 static enum status find_order(struct frames *frames, const struct trajectory_frame *frame,
                               bool *is_next) {
-    const struct series *const seen = &frames->time;
-    const double last = seen->count ? seen->value[seen->count - 1] : NAN;
+    const struct sample_series *const seen = &frames->time;
+    const double last = seen->count ? seen->values[seen->count - 1] : NAN;
     *is_next = frames->plan.in_any_order || !(frame->time <= last + time_tolerance(last));
     if (*is_next)
-        return mf_series_add(&frames->time, frame->time);
+        return mf_sample_series_add(&frames->time, &frame->time);
     if (!was_seen(frames, frame->time))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: frame %zu is out of order: its time, %.7g ps, comes after %.7g "
@@ -216,7 +217,7 @@ static enum status find_order(struct frames *frames, const struct trajectory_fra
 static bool is_wanted(const struct frames *frames, double time) {
     const struct frames_plan *const plan = &frames->plan;
     static const double share = 1e-3; // of an interval
-    const double steps = (time - frames->time.value[0]) / plan->every;
+    const double steps = (time - frames->time.values[0]) / plan->every;
     return plan->every == 0 ||
            fabs(steps - rint(steps)) < share + time_tolerance(time) / plan->every;
 }

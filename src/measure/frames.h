@@ -7,7 +7,7 @@
 /// are a fault, unless the frames are independent of each other.
 #pragma once
 
-#include "measure/series.h"
+#include "observe/sample_series.h"
 #include "trajectory/trajectory.h"
 
 #include <stdatomic.h>
@@ -43,7 +43,7 @@ struct frames {
     bool open, ended;
     size_t slots;
     struct trajectory_frame *frame; ///< shape [slots]: a batch, those to be used first
-    struct series time;             ///< of all frames in order, so far
+    struct sample_series time;      ///< of all frames in order, so far
     size_t used, skipped;
     struct bytes notes; ///< lines for a person: what was left out and why; a text
 };

@@ -200,7 +200,7 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
                               const struct mapping *mapping, const struct trajectory_frame *first) {
     enum status status = STATUS_OK;
     struct box_vectors box;
-    *measured = (struct measured){.plan = *plan, .mapping = mapping};
+    *measured = (struct measured){.plan = *plan, .mapping = mapping, .volume.columns = 1};
     measured->in_vacuum =
         plan->molecules.molecules && plan->profile.bins == 0 && is_without_box(first);
     if (!measured->in_vacuum)
@@ -253,7 +253,7 @@ void mf_measured_clear(struct measured *measured) {
     mf_weighted_density_clear(&measured->weighted);
     mf_measured_motion_clear(&measured->motion);
     mf_frame_features_clear(&measured->features);
-    mf_series_clear(&measured->volume);
+    mf_sample_series_clear(&measured->volume);
     *measured = (struct measured){0};
 }
 
@@ -350,7 +350,7 @@ static enum status add_one(struct measured *measured, const struct measured_slot
     TRY(mf_frame_features_add(&measured->features, &measured->pairs, &slot->pairs,
                               slot->box.volume));
     TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &measured->configuration));
-    return mf_series_add(&measured->volume, slot->box.volume);
+    return mf_sample_series_add(&measured->volume, &slot->box.volume);
 }
 
 static enum status begin_motion(struct measured *measured, const struct trajectory_frame *first) {
@@ -426,8 +426,19 @@ const struct rdf *mf_measured_rdf(const struct measured *measured) {
     return &observed->counted;
 }
 
+double mf_measured_mean(const struct sample_series *series, double *error) {
+    struct running_mean mean = {0};
+    for (size_t k = 0; k < series->count; k++)
+        mf_statistics_add(&mean, series->values[k]);
+    if (error)
+        *error = series->count < 2
+                     ? NAN
+                     : mf_statistics_correlated_error(series->values, series->count, 1);
+    return series->count > 0 ? mean.mean : NAN;
+}
+
 struct box mf_measured_box(const struct measured *measured) {
-    return mf_box_cube(mf_series_mean(&measured->volume));
+    return mf_box_cube(mf_measured_mean(&measured->volume, NULL));
 }
 
 struct units mf_measured_units(int system) {

@@ -59,7 +59,7 @@ struct measured {
     struct measured_motion motion;
     struct frame_features features; ///< by which it is seen where equilibrium begins
     size_t frames;
-    struct series volume; ///< [nm³]
+    struct sample_series volume; ///< [nm³]
 };
 
 /// Prepare for the frames of a mapping, whose types must be names of types of beads. `first` is a
@@ -99,6 +99,10 @@ void mf_measured_clear(struct measured *measured);
 
 /// The units of all that is measured, for results in those of `system`.
 struct units mf_measured_units(int system);
+
+/// The mean of a series of frames, NAN of none; its standard error, NAN if it is not known, unless
+/// that is NULL.
+double mf_measured_mean(const struct sample_series *series, double *error);
 
 /// Cube of the mean volume.
 struct box mf_measured_box(const struct measured *measured);

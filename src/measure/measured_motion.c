@@ -120,7 +120,7 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct box_vectors *box, double height) {
     enum status status = STATUS_OK;
     struct motion_plan lags;
-    *motion = (struct measured_motion){.plan = *plan};
+    *motion = (struct measured_motion){.plan = *plan, .temperature.columns = 1};
     if (plan->leave_out || !are_timed(first))
         return STATUS_OK;
     motion->first_time = first[0].time;
@@ -150,7 +150,7 @@ void mf_measured_motion_clear(struct measured_motion *motion) {
     mf_frame_motion_clear(&motion->path);
     mf_motion_clear(&motion->motion);
     mf_etd_clear(&motion->etd);
-    mf_series_clear(&motion->temperature);
+    mf_sample_series_clear(&motion->temperature);
     *motion = (struct measured_motion){0};
 }
 
@@ -215,8 +215,10 @@ enum status mf_measured_motion_add(struct measured_motion *motion,
     if (state)
         mf_motion_add(&motion->motion, state, motion->plan.threads);
     TRY(add_pairs(motion, beads, configuration));
-    if (beads->has_velocities && motion->is_thermal)
-        TRY(mf_series_add(&motion->temperature, find_temperature(motion, beads)));
+    if (beads->has_velocities && motion->is_thermal) {
+        const double temperature = find_temperature(motion, beads);
+        TRY(mf_sample_series_add(&motion->temperature, &temperature));
+    }
     motion->last_time = beads->time;
     motion->frames++;
     return STATUS_OK;

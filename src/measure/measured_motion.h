@@ -3,9 +3,9 @@
 #pragma once
 
 #include "measure/frame_motion.h"
-#include "measure/series.h"
 #include "observe/etd.h"
 #include "observe/motion.h"
+#include "observe/sample_series.h"
 #include "trajectory/mapping.h"
 
 /// Where the velocities of the VACF come from.
@@ -46,7 +46,7 @@ struct measured_motion {
     struct frame_motion path;
     struct motion motion;
     struct etd etd;
-    struct series temperature; ///< kinetic, of the beads [K]
+    struct sample_series temperature; ///< kinetic, of the beads [K]
 };
 
 /// Prepare for frames whose first two are given, of beads in a box of that density, and boxes of at

@@ -57,7 +57,7 @@ double mf_measure_output_density(const struct measure_result *result) {
 /// [K]: as given, or the kinetic one; NAN if neither is known.
 double mf_measure_output_temperature(const struct measure_result *result) {
     const double given = result->request->temperature;
-    return isnan(given) ? mf_series_mean(&result->measured->motion.temperature) : given;
+    return isnan(given) ? mf_measured_mean(&result->measured->motion.temperature, NULL) : given;
 }
 
 /// Mean mass of a type's beads [u]; NAN if it is not known.
@@ -91,10 +91,10 @@ bool mf_measure_output_is_alone(const struct measure_result *result) {
 // summary.json ------------------------------------------------------------------------------------
 
 static void write_density(const struct measure_result *result, struct json_writer *writer) {
-    const struct series *const volume = &result->measured->volume;
-    const double density = mf_measure_output_density(result), mean = mf_series_mean(volume);
-    const double error = density * mf_series_error(volume) / mean;
-    mf_json_put_measured(writer, "density", "1/lambda^3", density, error);
+    double error;
+    const double mean = mf_measured_mean(&result->measured->volume, &error);
+    const double density = mf_measure_output_density(result);
+    mf_json_put_measured(writer, "density", "1/lambda^3", density, density * error / mean);
     mf_json_write_quantity(writer, "volume", "lambda^3", mean);
 }
 
@@ -137,11 +137,12 @@ static enum status write_kirkwood_buff(const struct measure_result *result,
 }
 
 static void write_temperature(const struct measure_result *result, struct json_writer *writer) {
-    const struct series *const series = &result->measured->motion.temperature;
+    const struct sample_series *const series = &result->measured->motion.temperature;
     if (series->count == 0)
         return;
-    mf_json_put_measured(writer, "temperature", "1", mf_series_mean(series),
-                         mf_series_error(series));
+    double error;
+    const double mean = mf_measured_mean(series, &error);
+    mf_json_put_measured(writer, "temperature", "1", mean, error);
 }
 
 /// D by the MSD, and by the VACF if there is one.

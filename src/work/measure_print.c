@@ -152,9 +152,9 @@ static void print_pairs(struct progress *progress, const struct measure_result *
 /// constraints within beads do no harm, but those between beads make it too low.
 static void print_temperature(struct progress *progress, const struct measure_result *result) {
     static const double tolerance = 0.03, errors = 4;
-    const struct series *const kinetic = &result->measured->motion.temperature;
-    const double given = result->request->temperature, mean = mf_series_mean(kinetic);
-    const double error = mf_series_error(kinetic);
+    const struct sample_series *const kinetic = &result->measured->motion.temperature;
+    double error;
+    const double given = result->request->temperature, mean = mf_measured_mean(kinetic, &error);
     char text[NUMBER_TEXT_SIZE];
     mf_number_text(mean, error, text);
     if (isnan(given) && kinetic->count == 0)
@@ -177,8 +177,9 @@ static void print_temperature(struct progress *progress, const struct measure_re
 
 /// What cools or heats up all along has no temperature.
 static void print_heating(struct progress *progress, const struct measure_result *result) {
-    const struct series *const kinetic = &result->measured->motion.temperature;
-    const struct equilibration_drift drift = mf_equilibration_drift(kinetic->value, kinetic->count);
+    const struct sample_series *const kinetic = &result->measured->motion.temperature;
+    const struct equilibration_drift drift =
+        mf_equilibration_drift(kinetic->values, kinetic->count);
     if (equilibration_drifts(&drift, 1))
         mf_progress_print(
             progress,
@@ -192,8 +193,8 @@ static void print_heating(struct progress *progress, const struct measure_result
 static void print_speeds(struct progress *progress, const struct measure_result *result) {
     static const double hottest = 1e4, coldest = 1;
     const char *const units = result->request->frames.options.units;
-    const struct series *const kinetic = &result->measured->motion.temperature;
-    const double kelvin = mf_series_mean(kinetic);
+    const struct sample_series *const kinetic = &result->measured->motion.temperature;
+    const double kelvin = mf_measured_mean(kinetic, NULL);
     if (units && kinetic->count > 0 && (kelvin < coldest || kelvin > hottest))
         mf_progress_print(
             progress,

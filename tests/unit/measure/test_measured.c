@@ -196,7 +196,7 @@ static void test_measured_msd_is_ballistic_when_beads_fly_through_a_box(void **s
         assert_close(curve[2][lag], squares, rounding);
     }
     // ½ m v² = 3/2 k_B T (N − 1)/N of beads of 2 u.
-    assert_close_relative(mf_series_mean(&measured.motion.temperature),
+    assert_close_relative(mf_measured_mean(&measured.motion.temperature, NULL),
                           2 * squares * BEADS / (3 * (BEADS - 1)) / 0.00831446262, 1e-6);
     mf_measured_clear(&measured);
     free_film(film);
