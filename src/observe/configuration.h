@@ -52,5 +52,6 @@ struct composition mf_configuration_types(const struct configuration *configurat
 /// Tested: test_configuration.
 void mf_configuration_shares(const struct configuration *configuration, int axis, double *share);
 
-/// Whether beads of these ids, or numbers in the order of types, are no pair.
+/// Whether beads of these ids, or numbers in the order of types, are no pair. Tested:
+/// test_configuration.
 bool mf_configuration_leaves_out(const struct configuration *configuration, uint32_t a, uint32_t b);

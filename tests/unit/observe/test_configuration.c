@@ -44,6 +44,25 @@ static void test_configuration_of_a_trajectory_has_beads_in_the_order_of_types(v
     assert_close(share[2], 0.25, 0);
 }
 
+/// By molecules that a trajectory tells of, or by what the topology of a simulation excludes.
+static void test_configuration_leaves_out_what_is_no_pair(void **state) {
+    (void)state;
+    const uint32_t molecule[] = {7, 8, 7};
+    const struct configuration frame = {.count = 3, .molecule = molecule};
+    assert_true(mf_configuration_leaves_out(&frame, 0, 2));
+    assert_false(mf_configuration_leaves_out(&frame, 0, 1));
+    size_t start[] = {0, 1, 2, 2};
+    uint32_t excluded[] = {1, 0};
+    const struct topology chain = {.excluded_start = start, .excluded = excluded};
+    const struct particles joined = {.count = 3, .topology = &chain}, single = {.count = 3};
+    const struct configuration of_chain = {.count = 3, .particles = &joined};
+    const struct configuration of_singles = {.count = 3, .particles = &single};
+    assert_true(mf_configuration_leaves_out(&of_chain, 0, 1));
+    assert_true(mf_configuration_leaves_out(&of_chain, 1, 0));
+    assert_false(mf_configuration_leaves_out(&of_chain, 1, 2));
+    assert_false(mf_configuration_leaves_out(&of_singles, 0, 1));
+}
+
 /// Nothing of them is called: what a trajectory has not would be read.
 static void test_configuration_of_a_trajectory_is_refused_by_who_asks_for_more(void **state) {
     (void)state;
@@ -65,6 +84,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_configuration_is_what_a_simulation_holds),
         cmocka_unit_test(test_configuration_of_a_trajectory_has_beads_in_the_order_of_types),
+        cmocka_unit_test(test_configuration_leaves_out_what_is_no_pair),
         cmocka_unit_test(test_configuration_of_a_trajectory_is_refused_by_who_asks_for_more),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
