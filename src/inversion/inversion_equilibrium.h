@@ -53,7 +53,7 @@ mf_inversion_equilibrium_check(const struct inversion_state *state,
                                struct inversion_unequilibrated *unequilibrated) MUST_USE;
 
 /// What the replicas remember counts as noise if they have differed by nothing else since
-/// they were placed, or by less than a third of what was asked for: each goes on from a state of its own of the potential before, and
-/// mf_inversion_assess has taken the scatter of their means for the error. What drifts is none.
-/// Tested: test_inversion_equilibrium.
+/// they were placed, or by less than a third of what was asked for: each goes on from a state of
+/// its own of the potential before, and mf_inversion_assess has taken the scatter of their means
+/// for the error. What drifts is none. Tested: test_inversion_equilibrium.
 void mf_inversion_equilibrium_reset(struct inversion_state *state);
