@@ -229,8 +229,7 @@ bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
     snprintf(line, SCENE_LINE_SIZE,
              "temperature: %g in units of k_B T_0, usually 1; give kelvins in \"units\"",
              scene->setup.temperature);
-    return scene->setup.temperature > hottest && !mf_units_known(&scene->units) &&
-           scene->setup.attribute[ATTRIBUTES_MASS].ranges == 0;
+    return scene->setup.temperature > hottest && !mf_units_known(&scene->units);
 }
 
 /// In a reduced file masses of beads are in μ: one that is μ in u was given twice, and a bead would
