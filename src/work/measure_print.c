@@ -1,10 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/measure_print.h"
 
+#include "base/memory.h"
 #include "base/number_text.h"
 #include "io/units.h"
 
 #include <math.h>
+
+/// The exponent of the MSD over the times that D is of: 1 of beads that diffuse, 2 of those that
+/// fly.
+static double find_growth(const struct motion *motion, const struct motion_summary *summary) {
+    const size_t rows = (size_t)motion->plan.lags + 1, last = rows - 1;
+    OWNED double *columns = NULL;
+    if (mf_motion_table(motion, &columns) != STATUS_OK)
+        return NAN;
+    const double *const time = columns, *const msd = columns + rows;
+    size_t first = last;
+    while (first > 1 && time[first - 1] >= summary->fit_begin * (1 - 1e-9))
+        first--;
+    return log(msd[last] / msd[first]) / log(time[last] / time[first]);
+}
 
 /// How far beads go, and what is to be known of it: a periodic box slows D.
 static void print_diffusion(struct progress *progress, const struct measure_result *result) {
@@ -17,6 +32,13 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
                       "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, for this box: a larger "
                       "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
                       diffusion, s.fit_begin, s.fit_end);
+    static const double ballistic = 1.3;
+    const double growth = find_growth(&motion->motion, &s);
+    if (growth > ballistic)
+        mf_progress_print(progress,
+                          "mesofit: warning: the MSD grows as t^%.2g there: the beads do not "
+                          "diffuse yet, and that is no D; a longer trajectory has one",
+                          growth);
     const struct frame_motion *const path = &motion->path;
     if (path->far > 0)
         mf_progress_print(
@@ -165,7 +187,12 @@ static void print_temperature(struct progress *progress, const struct measure_re
             : result->measured->slots > 0 && result->measured->slot[0].beads.has_velocities
                 ? ", since velocities are used with times alone (--file-time-step, no --static)"
                 : "");
-    else if (kinetic->count > 0 && !isnan(given) && fabs(given - mean) > tolerance * given &&
+    else if (isnan(given))
+        mf_progress_print(progress,
+                          "T = %s K by the velocities of the beads; one that is known is given by "
+                          "--temperature",
+                          text);
+    else if (kinetic->count > 0 && fabs(given - mean) > tolerance * given &&
              !(fabs(given - mean) <= errors * error))
         mf_progress_print(
             progress,
