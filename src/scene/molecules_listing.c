@@ -12,7 +12,7 @@
 static bool is_listed(const struct structure *list, const struct structure *of) {
     const bool names = list->has_names && of->has_names && list->names == of->names;
     const bool ids = list->has_ids && of->has_ids && list->atoms == of->atoms;
-    if (of->atoms % list->atoms != 0 || (!names && list->atoms != of->atoms))
+    if (list->atoms == 0 || of->atoms % list->atoms != 0 || (!names && list->atoms != of->atoms))
         return false;
     for (size_t k = 0; k < of->atoms; k++) {
         const struct structure_atom *const a = &list->atom[k % list->atoms], *const b =

@@ -184,10 +184,10 @@ static void read_heading(struct lammps_data *data, const struct trajectory_frame
     const size_t count = mf_lammps_data_split(line, word);
     const char *comment = strchr(line, '#');
     char *style = NULL;
-    const char **const section =
-        count > 0 && count <= LONGEST ? find_section(data, word, count, &style) : NULL;
+    const bool named = count > 0 && count <= LONGEST;
+    const char **const section = named ? find_section(data, word, count, &style) : NULL;
     if (section == NULL) {
-        if (data->unknown == NULL && count > 0 && !is_of_pairs(word, count) &&
+        if (data->unknown == NULL && count > 0 && !(named && is_of_pairs(word, count)) &&
             !mf_lammps_data_is_labelled(word, count))
             data->unknown = line;
         return;
@@ -196,7 +196,7 @@ static void read_heading(struct lammps_data *data, const struct trajectory_frame
     do
         *section = mf_frame_next_line(frame, *section);
     while (*section && mf_words_count(*section) == 0);
-    if (style && comment++ && mf_words_next(&comment, &word[0]))
+    if (style && comment && *comment++ && mf_words_next(&comment, &word[0]))
         mf_words_copy(&word[0], style, sizeof data->style);
 }
 
