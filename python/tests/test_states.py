@@ -75,6 +75,6 @@ def test_a_problem_has_one_state(states):
 def test_keywords_reach_into_states(states):
     with pytest.raises(mesofit.InputError, match="states.warm: .*temprature: unknown key"):
         mesofit.fit(states, **{"states": {"warm": {"scene": {"temprature": 2}}}})
-    with pytest.raises(mesofit.InputError, match='"genetic" fits one state; "imc" and "auto" fit several'):
+    with pytest.raises(mesofit.InputError, match='"genetic" fits one state; "auto" and "imc" fit several'):
         mesofit.fit(states, method={"name": "genetic", "replicas": None, "precision": None,
                                     "iterations": None})

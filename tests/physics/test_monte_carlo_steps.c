@@ -31,10 +31,10 @@ struct probe {
     struct comoments blocks;
 };
 
-static enum status take(void *state, struct simulation *simulation) {
+static enum status take(void *state, const struct configuration *configuration) {
     struct probe *probe = state;
     double values[MAX] = {0};
-    probe->look(simulation, values);
+    probe->look(configuration->simulation, values);
     for (size_t k = 0; k < probe->size; k++)
         probe->sum[k] += values[k] / probe->each;
     if (++probe->samples % probe->each == 0) {

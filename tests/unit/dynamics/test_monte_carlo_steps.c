@@ -46,7 +46,8 @@ struct seen {
     bool changed;
 };
 
-static enum status take(void *state, struct simulation *simulation) {
+static enum status take(void *state, const struct configuration *configuration) {
+    const struct simulation *const simulation = configuration->simulation;
     struct seen *seen = state;
     const struct metropolis *chain = chain_of(simulation);
     const bool first = seen->energy == 0;
