@@ -138,8 +138,7 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
             !is_inverted(fit, kind) && targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: target.%s.fitted: \"%s\" does not fit it; %s do, and \"no\" "
-                                  "compares it with the "
-                                  "result",
+                                  "compares it with the result",
                                   file, mf_targets_name(kind), fit->method->name,
                                   mf_methods_list(mf_methods_fits_any_target, others));
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
@@ -163,11 +162,11 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
                           file, INVERSION_MAX_BINS, bins);
 }
 
-/// What moves the curves of all pairs would move that of pairs that there are not.
 static bool follows_pairs(const struct inverse_method *method) {
     return method->kind == INVERSE_INVERSION || method == &mf_successive;
 }
 
+/// What moves the curves of all pairs would move that of pairs that there are not.
 static enum status check_single_beads(const struct fit_file *fit, const char *file) {
     const struct composition *composition = &fit->scene.setup.composition;
     const bool moves = fit->unknown[UNKNOWN_POTENTIAL].wanted && !follows_pairs(fit->method);

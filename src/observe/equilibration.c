@@ -130,20 +130,28 @@ static void find_points(const double *series, size_t samples, struct points *poi
     }
 }
 
-/// Whether a number is off from 0, whose variance is so many times that of one point: −lg of the
-/// chance in Student's distribution.
-/// @param[in] left  what the points are off, if it is not 0
-static double judge(double number, double times, const struct points *left) {
+/// What points are off a line or a step: the variance with which each counts, and its freedom.
+struct noise {
+    double variance, freedom;
+};
+
+static struct noise noise_about(const struct points *left) {
     double squares = 0;
     for (size_t n = 0; n < left->count; n++)
         squares += left->value[n] * left->value[n];
     const double count = (double)left->count;
     const double inefficiency = mf_statistics_inefficiency(left->value, left->count, 1, 1);
-    const double freedom = freedom_share * count / inefficiency - 1;
-    const double error = sqrt(times * inefficiency * squares / (count - 2));
-    if (!(freedom > 1))
+    return (struct noise){inefficiency * squares / (count - 2),
+                          freedom_share * count / inefficiency - 1};
+}
+
+/// Evidence that a number is not 0, whose variance is so many times that of a point: −lg of the
+/// chance in Student's distribution.
+static double judge(double number, double times, const struct noise *noise) {
+    if (!(noise->freedom > 1))
         return 0;
-    return -log10(2 * gsl_cdf_tdist_Q(fabs(number) / error, freedom));
+    return -log10(2 *
+                  gsl_cdf_tdist_Q(fabs(number) / sqrt(times * noise->variance), noise->freedom));
 }
 
 /// Of a line through the points: their slope.
@@ -162,7 +170,8 @@ static double judge_line(const struct points *points) {
         left.value[n] -= mean + slope * ((double)n - middle);
     if (!(fabs(slope) * (double)points->count > rounding * fabs(mean)))
         return 0;
-    return judge(slope, 1 / squares, &left);
+    const struct noise noise = noise_about(&left);
+    return judge(slope, 1 / squares, &noise);
 }
 
 static struct running_mean mean_of(const struct points *points, size_t begin, size_t end) {
@@ -198,16 +207,15 @@ static double judge_step(const struct points *points, struct equilibration_drift
     for (size_t n = 0; n < points->count; n++)
         left.value[n] -= n < at ? first.mean : second.mean;
     const double height = second.mean - first.mean;
-    const double variance = mf_statistics_inefficiency(left.value, left.count, 1, 1) *
-                            (first.squares + second.squares) / (before + after - 2);
+    const struct noise noise = noise_about(&left);
     *drift = (struct equilibration_drift){.part = before / (before + after),
                                           .before = first.mean,
                                           .after = second.mean,
-                                          .before_error = sqrt(variance / before),
-                                          .after_error = sqrt(variance / after)};
+                                          .before_error = sqrt(noise.variance / before),
+                                          .after_error = sqrt(noise.variance / after)};
     if (!(fabs(height) > rounding * fabs(second.mean)))
         return 0;
-    return judge(height, 1 / before + 1 / after, &left) - log10(PARTS - 1);
+    return judge(height, 1 / before + 1 / after, &noise) - log10(PARTS - 1);
 }
 
 static void find_parts(const double *series, size_t samples, double part[PARTS]) {
