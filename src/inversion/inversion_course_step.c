@@ -6,10 +6,11 @@
 #include <math.h>
 #include <string.h>
 
-/// Largest change of the potential in one iteration where the target is well known [k_B T_0].
+/// Largest change of the potential in one iteration where the target is well known [k_B T], T that
+/// of the coldest state.
 static const double largest_change = 1;
 
-/// The same of a single bin where it is not [k_B T_0]. A bin at the edge of the core that the
+/// The same of a single bin where it is not [k_B T]. A bin at the edge of the core that the
 /// samples have hardly seen responds to nothing: to fill it, one step lowered the potential by
 /// 26,000 there.
 static const double largest_unknown_change = 3;
@@ -17,13 +18,21 @@ static const double largest_unknown_change = 3;
 /// Part of the last step, back, that still swings in by itself: each step halves what is left.
 static const double max_left = 0.5;
 
+static double find_lowest_temperature(const struct inversion *inversion) {
+    double lowest = inversion->state->problem->scene.temperature;
+    for (size_t s = 1; s < inversion->states; s++)
+        lowest = fmin(lowest, inversion->state[s].problem->scene.temperature);
+    return lowest;
+}
+
 /// The share of a step that is bounded as a whole.
 static double find_bounded(const struct inversion *inversion, const double *step) {
     const struct potential_grid *grid = inversion_grid(inversion);
     const bool whole = inversion->state->basis.count > 0;
-    double largest = 0;
+    const double temperature = find_lowest_temperature(inversion);
+    double largest = 0; // times what is allowed
     for (size_t a = 0; a < grid->known; a++) {
-        const double size = fabs(step[grid->known_point[a]]);
+        const double size = fabs(step[grid->known_point[a]]) / temperature;
         if (grid->well_known[a])
             largest = fmax(largest, size / largest_change);
         else if (whole)
@@ -61,13 +70,14 @@ static void take_part(struct inversion *inversion, double part) {
     const struct potential_grid *grid = &first->grid;
     struct inversion_course *course = &inversion->course;
     const bool whole = first->basis.count > 0;
+    const double largest = largest_unknown_change * find_lowest_temperature(inversion);
     const double share =
         part * course->progress.damping * find_bounded(inversion, course->best.step);
     for (size_t a = 0; a < grid->known; a++) {
         const size_t point = grid->known_point[a];
         double change = share * course->best.step[point];
         if (!grid->well_known[a] && !whole)
-            change = fmax(-largest_unknown_change, fmin(largest_unknown_change, change));
+            change = fmax(-largest, fmin(largest, change));
         course->phi[point] = course->best.phi[point] + change;
     }
     mf_potential_grid_complete(grid, course->phi);

@@ -17,6 +17,9 @@ struct fit {
     struct inversion inversion;
 };
 
+/// At k_B T_0.
+static const struct inverse_problem usual = {.scene.temperature = 1};
+
 static struct inversion *begin(struct fit *fit, bool pressure) {
     *fit = (struct fit){
         .problem.targets.target = {[TARGET_RDF].count = 10, [TARGET_PRESSURE].count = pressure},
@@ -94,6 +97,7 @@ static void test_inversion_shortens_steps_that_go_too_far(void **state) {
         const double slope = slopes[k];
         double best = 0.2, best_step = -slope * best, phi = best + best_step, step = -slope * phi;
         struct inversion_state made = {
+            .problem = &usual,
             .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
         struct inversion inversion = {
             .state = &made,
@@ -146,7 +150,7 @@ static void test_inversion_goes_back_from_a_step_that_was_cut(void **state) {
     bool well_known = true;
     double best = 0, best_step = 50, phi = 0;
     struct inversion_state made = {
-        .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
+        .problem = &usual, .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
     struct inversion inversion = {.state = &made,
                                   .states = 1,
                                   .course = {.phi = &phi,
@@ -163,6 +167,27 @@ static void test_inversion_goes_back_from_a_step_that_was_cut(void **state) {
     assert_close(phi, 0.1, 1e-12);
 }
 
+/// Whatever the unit of energy is: of states at 3 and 2 the colder one decides.
+static void test_inversion_cuts_steps_by_the_coldest_state(void **state) {
+    (void)state;
+    static const struct inverse_problem warm = {.scene.temperature = 3},
+                                        cold = {.scene.temperature = 2};
+    size_t points[] = {0, 1};
+    bool well_known[] = {true, false};
+    double best[] = {0, 0}, best_step[] = {50, -300}, phi[2];
+    struct inversion_state made[] = {
+        {.problem = &warm, .grid = {.known = 2, .known_point = points, .well_known = well_known}},
+        {.problem = &cold}};
+    struct inversion inversion = {.state = made,
+                                  .states = 2,
+                                  .course = {.phi = phi,
+                                             .best = {.phi = best, .step = best_step},
+                                             .progress = {.damping = 1, .chosen_damping = 1}}};
+    mf_inversion_take_step(&inversion);
+    assert_close(phi[0], 2, 1e-12);
+    assert_close(phi[1], -6, 1e-12);
+}
+
 /// A step of 50 that was cut to 1 went too far: from there one of 100 leads back, which is cut,
 /// too. The straight line through both is 0 at a third of what was gone.
 static void test_inversion_shortens_steps_that_were_cut(void **state) {
@@ -171,7 +196,7 @@ static void test_inversion_shortens_steps_that_were_cut(void **state) {
     bool well_known = true;
     double best = 0, best_step = 50, phi = 0, step = -100;
     struct inversion_state made = {
-        .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
+        .problem = &usual, .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
     struct inversion inversion = {
         .state = &made,
         .states = 1,
@@ -198,6 +223,7 @@ static void test_inversion_relaxes_to_one_place_with_any_chosen_damping(void **s
         bool well_known = true;
         double best = 0, best_step = 0.5, phi = 0, step = 0;
         struct inversion_state made = {
+            .problem = &usual,
             .grid = {.known = 1, .known_point = &point, .well_known = &well_known}};
         struct inversion inversion = {
             .state = &made,
@@ -369,7 +395,7 @@ static void test_inversion_ends_with_the_step_that_is_left_or_the_mean(void **st
     (void)state;
     const struct inversion_rule forgetting = {.memoryless = true}, other = {.memoryless = false};
     struct inverse_method method = {.own = &other};
-    struct inverse_problem problem = {0};
+    struct inverse_problem problem = usual;
     size_t known_point[] = {0, 1}, known_bin[] = {0, 1};
     bool well_known[] = {true, true};
     double phi[2], best[] = {2, 1}, best_step[] = {0.3, -0.1}, pooled_phi[] = {1.5, 1.25};
@@ -424,6 +450,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_shortens_steps_that_go_too_far),
         cmocka_unit_test(test_inversion_goes_back_for_the_part_of_which_its_samples_tell),
         cmocka_unit_test(test_inversion_goes_back_from_a_step_that_was_cut),
+        cmocka_unit_test(test_inversion_cuts_steps_by_the_coldest_state),
         cmocka_unit_test(test_inversion_shortens_steps_that_were_cut),
         cmocka_unit_test(test_inversion_relaxes_to_one_place_with_any_chosen_damping),
         cmocka_unit_test(test_inversion_goes_back_for_the_part_that_all_states_tell),
