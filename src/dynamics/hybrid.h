@@ -2,10 +2,12 @@
 /// @file Hybrid Monte Carlo: dynamics that sample the canonical ensemble exactly at any time step.
 ///
 /// S. Duane, A. D. Kennedy, B. J. Pendleton and D. Roweth, Phys. Lett. B 195, 216 (1987), with
-/// velocities that persist as in A. M. Horowitz, Phys. Lett. B 268, 247 (1991): a few steps of
-/// velocity Verlet are a proposal, taken with probability min(1, exp(−ΔH/k_B T)); if it is not,
-/// the particles go back the way they came. Before each, some of them collide with a heat bath:
-/// they get velocities of Maxwell's distribution. Bonds, angles and dihedrals of molecules take
+/// velocities that persist as in A. M. Horowitz, Phys. Lett. B 268, 247 (1991), and extra chances,
+/// C. M. Campos and J. M. Sanz-Serna, J. Comput. Phys. 281, 365 (2015): a few steps of velocity
+/// Verlet are a proposal, taken if u < exp(−ΔH/k_B T); if it is not, it goes on for as many steps,
+/// with ΔH from the same beginning and the same u, until it is or has no more chances: then the
+/// particles go back the way they came. Before each, some of them collide with a heat bath: they
+/// get velocities of Maxwell's distribution. Bonds, angles and dihedrals of molecules take
 /// shorter steps of their own (dynamics/respa.h).
 #pragma once
 
@@ -23,7 +25,7 @@ struct hybrid {
     double *position[3];         ///< at the start of the trajectory, shape [particles]
     double *velocity[3];         ///< the same
     uint32_t *id;                ///< the same
-    double accepted;             ///< probability to be, of the last trajectory
+    double accepted;             ///< probability to be, of the last trajectory at first
     uint64_t taken, tried;       ///< trajectories since mf_hybrid_equilibrate
     struct pair_sums sums;       ///< of the present configuration
     const uint32_t *counts;      ///< its pairs, shape [bins + 1]
@@ -54,8 +56,8 @@ enum status mf_hybrid_scatter(struct hybrid *hybrid) MUST_USE;
 /// that continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
 enum status mf_hybrid_refresh(struct hybrid *hybrid) MUST_USE;
 
-/// Trajectories whose time step is tuned until nine of ten are taken. Fails: NO_MEMORY,
-/// INTERRUPTED.
+/// Trajectories whose time step is tuned until four of five are taken at their first chance. Fails:
+/// NO_MEMORY, INTERRUPTED.
 enum status mf_hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;
 
 /// Trajectories with a fixed time step, as detailed balance asks. Fails: NO_MEMORY, INTERRUPTED.

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/hybrid.h"
 
+#include "base/statistics.h"
 #include "curves/formula.h"
 #include "shared/is_close.h"
 #include "shared/many_bodies.h"
 #include "shared/testing.h"
+
+#include <math.h>
 
 enum { PAIRS = 3, COUNT = 200 };
 
@@ -61,8 +64,64 @@ static void test_hybrid_of_local_densities_alone_has_a_step(void **state) {
     mf_many_body_clear(&law);
 }
 
+/// Mean Φ of two beads in a box, and chance that they touch, by Simpson's rule.
+static void find_exact(double a, double temperature, double *energy, double *touching) {
+    enum { HALVES = 1000 };
+    double inside = 0, sum = 0;
+    const double volume = 4 * M_PI / 3;
+    for (int k = 0; k <= 2 * HALVES; k++) {
+        const double r = (double)k / (2 * HALVES), phi = a * (1 - r) * (1 - r) / 2;
+        const double factor = (k == 0 || k == 2 * HALVES ? 1 : k % 2 ? 4 : 2) / (6.0 * HALVES);
+        const double weight = factor * 4 * M_PI * r * r * exp(-phi / temperature);
+        inside += weight;
+        sum += weight * phi;
+    }
+    const double all = 4 * 4 * 4 - volume + inside;
+    *energy = sum / all;
+    *touching = inside / all;
+}
+
+/// Two beads with time steps by which every second trajectory that meets the other bead is not
+/// taken at its first chance: what follows, too, is that of the canonical ensemble.
+static void test_hybrid_samples_exactly_by_later_chances(void **state) {
+    enum { BLOCKS = 40, SAMPLES = 5000 };
+    (void)state;
+    static const double a = 60, temperature = 2;
+    const struct composition two = mf_composition_of_one(2);
+    struct hybrid hybrid;
+    struct table table;
+    struct running_mean energy = {0}, touching = {0};
+    double exact_energy, exact_touching;
+    uint64_t later = 0;
+    find_exact(a, temperature, &exact_energy, &exact_touching);
+    make_table(&table, a);
+    assert_ok(mf_hybrid_init(&hybrid, &box, &two, &table, NULL, NULL, &bins, temperature, 8, NULL));
+    hybrid.simulation.setup.time_step = 0.17;
+    for (int block = 0; block < BLOCKS; block++) {
+        double sum = 0, touch = 0;
+        for (int sample = 0; sample < SAMPLES; sample++) {
+            assert_ok(mf_hybrid_run(&hybrid, 1));
+            later += hybrid.accepted < 0.5;
+            sum += hybrid.sums.energy / SAMPLES;
+            touch += (hybrid.sums.energy > 0) / (double)SAMPLES;
+        }
+        mf_statistics_add(&energy, sum);
+        mf_statistics_add(&touching, touch);
+    }
+    print_message("%.2f of all at a later chance; z %.2f, %.2f\n",
+                  (double)later / (BLOCKS * SAMPLES),
+                  (energy.mean - exact_energy) / mf_statistics_standard_error(&energy),
+                  (touching.mean - exact_touching) / mf_statistics_standard_error(&touching));
+    assert_true(later > BLOCKS * SAMPLES / 100);
+    assert_close(energy.mean, exact_energy, 4 * mf_statistics_standard_error(&energy));
+    assert_close(touching.mean, exact_touching, 4 * mf_statistics_standard_error(&touching));
+    mf_hybrid_clear(&hybrid);
+    mf_table_clear(&table);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_hybrid_samples_exactly_by_later_chances),
         cmocka_unit_test(test_hybrid_begins_with_the_step_of_the_stiffest_pairs),
         cmocka_unit_test(test_hybrid_of_local_densities_alone_has_a_step),
     };
