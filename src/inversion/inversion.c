@@ -112,7 +112,8 @@ static void describe(const struct inversion *inversion, const double *own, bool 
                     progress->iteration + 1 >= inversion->parameters.iterations,
     };
     memcpy(step->noise_of_state, progress->best.noise, sizeof step->noise_of_state);
-    mf_inversion_equilibrium_slowest(inversion->state, &step->slowest);
+    for (size_t s = 0; s < inversion->states; s++)
+        mf_inversion_equilibrium_slowest(&inversion->state[s], &step->slowest);
     show_groups(inversion, step);
     describe_samples(inversion, own, step);
     if (step->finished && !converged)

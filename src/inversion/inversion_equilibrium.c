@@ -181,18 +181,17 @@ void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
     const struct replicas *replicas = &state->replicas;
     struct quantity quantity[MAX_QUANTITIES];
     const size_t count = list(state, quantity);
-    double most = 0;
     for (size_t k = 0; k < count; k++) {
         const size_t *number = quantity[k].number ? quantity[k].number : &quantity[k].first;
         const size_t numbers = quantity[k].count;
         // Quarters do not see what lasts longer than they do.
-        const double memory =
+        const double independent =
+            replicas->counts.count /
             fmax(mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, number, numbers),
                  mf_replicas_inefficiency(replicas, 1, number, numbers));
-        if (!(memory > most))
+        if (slowest->quantity[0] != '\0' && !(independent < slowest->independent))
             continue;
-        most = memory;
-        slowest->independent = replicas->counts.count / memory;
+        slowest->independent = independent;
         snprintf(slowest->quantity, sizeof slowest->quantity, "%s", quantity[k].name);
     }
 }

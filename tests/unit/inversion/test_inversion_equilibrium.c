@@ -210,7 +210,7 @@ static void test_slowest_number_is_told_with_its_independent_samples(void **stat
     (void)state;
     enum { TRIALS = 200 };
     static struct made made;
-    struct inverse_slowest slowest;
+    struct inverse_slowest slowest, of_other = {.quantity = "g(r)", .independent = 1};
     double sum = 0;
     int named = 0;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
@@ -219,10 +219,13 @@ static void test_slowest_number_is_told_with_its_independent_samples(void **stat
         made.state.replicas.counts.count = 1000;
         for (size_t n = 0; n < NUMBERS; n++)
             made.comoment[n * NUMBERS + n] = 1000;
+        slowest = (struct inverse_slowest){0};
         mf_inversion_equilibrium_slowest(&made.state, &slowest);
         named += strcmp(slowest.quantity, "the longest waves of the types") == 0;
         sum += 1 / slowest.independent;
     }
+    mf_inversion_equilibrium_slowest(&made.state, &of_other); // another state's is slower
+    assert_true(of_other.independent == 1 && strcmp(of_other.quantity, "g(r)") == 0);
     print_message("%.2f independent samples, named in %d of %d\n", TRIALS / sum, named, TRIALS);
     assert_true(named > 0.8 * TRIALS);
     assert_true(fabs(TRIALS / sum - 8) < 1.5);
