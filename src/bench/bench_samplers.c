@@ -43,16 +43,14 @@ static double error_of_g(const struct replicas *replicas, const double *ideal,
 
 /// How often each kind of moves of molecules was accepted.
 static void print_moves(const struct sampler *sampler) {
-    const struct metropolis *chain = &sampler->chain;
-    if (sampler->kind != SAMPLER_MONTE_CARLO || sampler->molecules == NULL)
+    const struct molecule_tally *tally = mf_sampler_tally(sampler);
+    if (tally == NULL)
         return;
-    printf("           accepted: %.2f of beads", (double)chain->accepted / (double)chain->tried);
-    for (int move = 0; move < MOLECULE_MOVES; move++) {
-        const struct molecule_tally *tally = &chain->molecules.tally[move];
-        if (tally->tried > 0)
+    printf("           accepted: %.2f of all", mf_sampler_acceptance(sampler));
+    for (int move = 0; move < MOLECULE_MOVES; move++)
+        if (tally[move].tried > 0)
             printf(", %s %.2f", mf_molecule_move_names[move],
-                   (double)tally->accepted / (double)tally->tried);
-    }
+                   (double)tally[move].accepted / (double)tally[move].tried);
     printf("\n");
 }
 

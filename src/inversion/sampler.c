@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "inversion/sampler.h"
+#include "inversion/sampler_source.h"
 
 #include "base/statistics.h"
 
@@ -8,8 +8,8 @@
 
 const char *const mf_sampler_kinds[] = {"monte-carlo", "dynamics", "auto", NULL};
 
-/// Beads of a mixture for each exchange that a sweep tries.
-enum { BEADS_BY_EXCHANGE = 50 };
+static const struct sampler_source *const sources[] = {
+    [SAMPLER_MONTE_CARLO] = &mf_sampler_moves, [SAMPLER_DYNAMICS] = &mf_sampler_trajectories};
 
 size_t mf_sampler_bins(const struct sampler_system *system) {
     size_t bins = (size_t)mf_composition_pairs(system->composition) * system->bins;
@@ -50,42 +50,25 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     if (kind == SAMPLER_AUTO)
         kind = system->molecules || system->many_body ? SAMPLER_DYNAMICS : SAMPLER_MONTE_CARLO;
     *sampler =
-        (struct sampler){.kind = kind,
+        (struct sampler){.source = sources[kind],
                          .molecules = system->molecules,
                          .composition = *system->composition,
+                         .bins = {.low = system->low,
+                                  .width = system->width,
+                                  .bins = system->bins,
+                                  .pairs = (size_t)mf_composition_pairs(system->composition)},
                          .group = system->group,
                          .groups = system->groups,
-                         .integrals = system->integrals,
-                         .histogram = {.low = system->low,
-                                       .width = system->width,
-                                       .bins = system->bins,
-                                       .pairs = (size_t)mf_composition_pairs(system->composition)}};
+                         .integrals = system->integrals};
     CHECK(begin_waves(sampler, system));
     for (size_t k = 0; k < system->groups; k++)
         if (system->group[k].density)
             CHECK(begin_densities(sampler, system, system->group[k].density));
     if (system->molecules)
         CHECK(mf_whole_molecules_init(&sampler->whole, &system->molecules->topology));
-    if (sampler->kind == SAMPLER_DYNAMICS) {
-        CHECK(mf_hybrid_init(&sampler->hybrid, system->box, system->composition, system->potential,
-                             system->molecules, system->many_body, &sampler->histogram,
-                             system->temperature, system->seed, &system->bias));
-        sampler->hybrid.simulation.setup.cancel = system->cancel;
-        return STATUS_OK;
-    }
-    NEW_ARRAY(sampler->histogram.counts, pair_histogram_size(&sampler->histogram));
-    CHECK(mf_metropolis_init(&sampler->chain, system->box, system->composition, system->potential,
-                             system->temperature, system->seed));
-    sampler->chain.cancel = system->cancel;
-    sampler->chain.bias = system->bias;
-    if (composition_is_mixed(system->composition) && system->molecules == NULL)
-        sampler->chain.exchanges =
-            1 + (uint32_t)mf_composition_particles(system->composition) / BEADS_BY_EXCHANGE;
-    if (system->molecules == NULL && system->bias.tilt != 0) {
-        mf_placement_tilt(&sampler->chain.particles, system->bias.tilt, system->seed);
-        CHECK(mf_metropolis_refresh(&sampler->chain));
-    }
-    CHECK(mf_metropolis_join(&sampler->chain, system->molecules));
+    sampler->own = mf_memory_zeroed(1, sampler->source->size);
+    CHECK(sampler->own ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK(sampler->source->init(sampler->own, system, &sampler->bins));
 done:
     if (status != STATUS_OK)
         mf_sampler_clear(sampler);
@@ -93,37 +76,35 @@ done:
 }
 
 void mf_sampler_clear(struct sampler *sampler) {
-    mf_metropolis_clear(&sampler->chain);
-    mf_hybrid_clear(&sampler->hybrid);
+    if (sampler->own)
+        sampler->source->clear(sampler->own);
+    mf_memory_free(sampler->own);
     mf_kirkwood_buff_waves_clear(&sampler->kirkwood_buff);
     mf_whole_molecules_clear(&sampler->whole);
     if (sampler->densities)
         mf_density_list_clear(sampler->densities);
     mf_memory_free(sampler->densities);
-    mf_memory_free(sampler->histogram.counts);
     *sampler = (struct sampler){0};
 }
 
 enum status mf_sampler_scatter(struct sampler *sampler) {
-    return sampler->kind == SAMPLER_DYNAMICS ? mf_hybrid_scatter(&sampler->hybrid)
-                                             : mf_metropolis_scatter(&sampler->chain);
+    return sampler->source->scatter(sampler->own);
 }
 
 enum status mf_sampler_begin(struct sampler *sampler) {
-    if (sampler->kind == SAMPLER_DYNAMICS)
-        return mf_hybrid_refresh(&sampler->hybrid);
-    return mf_metropolis_refresh(&sampler->chain);
+    return sampler->source->begin(sampler->own);
 }
 
 enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
-    if (sampler->kind == SAMPLER_DYNAMICS)
-        return mf_hybrid_equilibrate(&sampler->hybrid, sweeps);
-    return mf_metropolis_equilibrate(&sampler->chain, (uint32_t)sweeps);
+    return sampler->source->equilibrate(sampler->own, sweeps);
 }
 
-static const struct particles *particles_of(const struct sampler *sampler) {
-    return sampler->kind == SAMPLER_DYNAMICS ? &sampler->hybrid.simulation.particles
-                                             : &sampler->chain.particles;
+double mf_sampler_acceptance(const struct sampler *sampler) {
+    return sampler->source->acceptance(sampler->own);
+}
+
+const struct particles *mf_sampler_particles(const struct sampler *sampler) {
+    return sampler->source->particles(sampler->own);
 }
 
 /// Beads in each bin of their densities, or the sums of what they have there.
@@ -139,7 +120,7 @@ static void count_densities(const struct density_list *densities, const struct b
 
 /// S of the groups in the present configuration, from `sample` on; returns their end.
 static double *count_groups(const struct sampler *sampler, double *sample) {
-    const struct particles *particles = particles_of(sampler);
+    const struct particles *particles = mf_sampler_particles(sampler);
     for (size_t k = 0; k < sampler->groups; k++) {
         const struct sampler_group *group = &sampler->group[k];
         memset(sample, 0, group->bins.count * sizeof *sample);
@@ -185,7 +166,7 @@ static void sum_sizes(struct sampler *sampler, double *sums) {
     const struct topology *topology = &sampler->molecules->topology;
     for (int k = 0; k < topology->kinds; k++)
         for (int64_t m = 0; m < topology->kind[k].count; m++) {
-            mf_whole_molecules_make(&sampler->whole, particles_of(sampler), k, m);
+            mf_whole_molecules_make(&sampler->whole, mf_sampler_particles(sampler), k, m);
             add_size(&sampler->whole, topology->kind[k].beads, sums);
         }
 }
@@ -209,31 +190,22 @@ static double sum_waves(const struct particles *particles, const struct composit
 }
 
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
-    const size_t bins = pair_histogram_size(&sampler->histogram) - 1;
-    const uint32_t *counts = sampler->histogram.counts;
-    struct pair_sums sums;
-    if (sampler->kind == SAMPLER_DYNAMICS) {
-        TRY(mf_hybrid_run(&sampler->hybrid, sweeps));
-        counts = sampler->hybrid.counts;
-        sums = sampler->hybrid.sums;
-    } else {
-        TRY(mf_metropolis_run(&sampler->chain, (uint32_t)sweeps));
-        memset(sampler->histogram.counts, 0, (bins + 1) * sizeof *counts);
-        TRY(mf_metropolis_count(&sampler->chain, &sampler->histogram, &sums));
-    }
+    const size_t bins = pair_histogram_size(&sampler->bins) - 1;
+    struct sampler_pairs pairs;
+    TRY(sampler->source->run(sampler->own, sweeps, &pairs));
     for (size_t a = 0; a < bins; a++)
-        sample[a] = counts[a];
+        sample[a] = pairs.counts[a];
     if (sampler->densities)
-        TRY(mf_density_list_find(sampler->densities, particles_of(sampler)));
+        TRY(mf_density_list_find(sampler->densities, mf_sampler_particles(sampler)));
     double *sum = count_groups(sampler, sample + bins);
-    sum[SAMPLER_VIRIAL] = sums.virial;
-    sum[SAMPLER_ENERGY] = sums.energy;
+    sum[SAMPLER_VIRIAL] = pairs.sums.virial;
+    sum[SAMPLER_ENERGY] = pairs.sums.energy;
     sum_sizes(sampler, sum);
     sum[SAMPLER_WAVES] = composition_is_mixed(&sampler->composition)
-                             ? sum_waves(particles_of(sampler), &sampler->composition)
+                             ? sum_waves(mf_sampler_particles(sampler), &sampler->composition)
                              : 0;
     if (sampler->waves)
-        mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, particles_of(sampler), 1,
+        mf_kirkwood_buff_waves_take(&sampler->kirkwood_buff, mf_sampler_particles(sampler), 1,
                                     sum + SAMPLER_SUMS);
     sum_stresses(sampler, sum + SAMPLER_SUMS + sampler->integrals);
     return STATUS_OK;
@@ -243,7 +215,7 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
 static double count_excluded_of(const struct sampler *sampler,
                                 const struct composition *composition,
                                 const struct topology_kind *kind, double *counts) {
-    const struct pair_histogram *bins = &sampler->histogram;
+    const struct pair_histogram *bins = &sampler->bins;
     const double(*place)[3] = (const double(*)[3])sampler->whole.place;
     double nearer = 0;
     for (int bead = 0; bead < kind->beads; bead++)
@@ -267,23 +239,13 @@ double mf_sampler_count_excluded(struct sampler *sampler, const struct compositi
     double nearer = 0;
     for (int k = 0; k < topology->kinds; k++)
         for (int64_t m = 0; m < topology->kind[k].count; m++) {
-            mf_whole_molecules_make(&sampler->whole, particles_of(sampler), k, m);
+            mf_whole_molecules_make(&sampler->whole, mf_sampler_particles(sampler), k, m);
             nearer += count_excluded_of(sampler, composition, &topology->kind[k], counts);
         }
     return nearer;
 }
 
-double mf_sampler_acceptance(const struct sampler *sampler) {
-    const struct hybrid *hybrid = &sampler->hybrid;
-    uint64_t accepted, tried;
-    if (sampler->kind == SAMPLER_DYNAMICS)
-        return (double)hybrid->taken / (double)hybrid->tried;
-    mf_metropolis_tally(&sampler->chain, &accepted, &tried);
-    return (double)accepted / (double)tried;
-}
-
-/// Positions and ids of the particles, in their order.
-static size_t place_spans(struct particles *particles, struct memory_span *span) {
+size_t mf_sampler_place_spans(struct particles *particles, struct memory_span *span) {
     size_t n = 0;
     for (int d = 0; d < particles->box.dimensions; d++)
         span[n++] = (struct memory_span){particles->position[d], particles->count * sizeof(double)};
@@ -291,27 +253,6 @@ static size_t place_spans(struct particles *particles, struct memory_span *span)
     return n;
 }
 
-static size_t chain_spans(struct metropolis *chain, struct memory_span *span) {
-    size_t n = place_spans(&chain->particles, span);
-    span[n++] = (struct memory_span){&chain->step, sizeof chain->step};
-    span[n++] = (struct memory_span){&chain->sweep, sizeof chain->sweep};
-    if (chain->molecules.molecules)
-        span[n++] = (struct memory_span){chain->molecules.tally, sizeof chain->molecules.tally};
-    return n;
-}
-
-static size_t hybrid_spans(struct hybrid *hybrid, struct memory_span *span) {
-    struct particles *particles = &hybrid->simulation.particles;
-    double *time_step = &hybrid->simulation.setup.time_step;
-    size_t n = place_spans(particles, span);
-    for (int d = 0; d < particles->box.dimensions; d++)
-        span[n++] = (struct memory_span){particles->velocity[d], particles->count * sizeof(double)};
-    span[n++] = (struct memory_span){time_step, sizeof *time_step};
-    span[n++] = (struct memory_span){&hybrid->trajectory, sizeof hybrid->trajectory};
-    return n;
-}
-
 size_t mf_sampler_spans(struct sampler *sampler, struct memory_span *span) {
-    return sampler->kind == SAMPLER_DYNAMICS ? hybrid_spans(&sampler->hybrid, span)
-                                             : chain_spans(&sampler->chain, span);
+    return sampler->source->spans(sampler->own, span);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file One source of configurations of the canonical ensemble, by single moves or by dynamics.
 ///
-/// A sweep is a move of every particle (metropolis), or a trajectory of a few time steps (hybrid).
-/// Which of them makes more of a second: lab/samplers.md.
+/// A sweep is a move of every particle (inversion/sampler_moves.c), or a trajectory of a few time
+/// steps (inversion/sampler_trajectories.c). Which of them makes more of a second: lab/samplers.md.
 #pragma once
 
 #include "base/memory.h"
-#include "dynamics/hybrid.h"
-#include "dynamics/metropolis.h"
+#include "dynamics/molecule_moves.h"
+#include "forces/many_body.h"
 #include "observe/bonded_distribution.h"
 #include "observe/density_list.h"
 #include "observe/kirkwood_buff_waves.h"
@@ -30,16 +30,17 @@ struct sampler_group {
     const struct weighted_density_settings *density; ///< NULL: of molecules
 };
 
+struct sampler_source;
+
 struct sampler {
-    enum sampler_kind kind;            ///< not SAMPLER_AUTO
-    const struct molecules *molecules; ///< NULL: single particles
+    const struct sampler_source *source; ///< inversion/sampler_source.h
+    void *own;                           ///< of the source
+    const struct molecules *molecules;   ///< NULL: single particles
     struct composition composition;
+    struct pair_histogram bins;        ///< of pairs; without counts
     const struct sampler_group *group; ///< shape [groups]
     size_t groups, integrals;
-    struct metropolis chain;         ///< of SAMPLER_MONTE_CARLO
-    struct hybrid hybrid;            ///< of SAMPLER_DYNAMICS
-    struct pair_histogram histogram; ///< of the chain's configuration
-    bool waves;                      ///< the integrals are asked for
+    bool waves; ///< the integrals are asked for
     struct kirkwood_buff_waves kirkwood_buff;
     struct whole_molecules whole;   ///< of molecules, for their sizes
     struct density_list *densities; ///< of a group of local densities; NULL: there is none
@@ -110,6 +111,13 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
 /// Part of the moves, or of the trajectories, that were taken since mf_sampler_equilibrate; NaN
 /// without any. Tested: test_replicas.
 double mf_sampler_acceptance(const struct sampler *sampler);
+
+/// The present configuration.
+const struct particles *mf_sampler_particles(const struct sampler *sampler);
+
+/// How often each kind of moves of molecules was taken, shape [MOLECULE_MOVES]; NULL: there are
+/// none.
+const struct molecule_tally *mf_sampler_tally(const struct sampler *sampler);
 
 /// Count the pairs of the configuration that molecules exclude: what S leaves out of its bins.
 /// Returns how many are nearer than the first bin.

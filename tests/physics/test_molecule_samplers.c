@@ -193,9 +193,7 @@ static void by_sampler(const struct melt *melt, enum sampler_kind kind, uint64_t
         double sum[KINDS][MAX] = {{0}}, sample[SAMPLER_SUMS];
         for (int n = 0; n < SAMPLES; n++) {
             assert_ok(mf_sampler_sample(&sampler, every, sample));
-            measure(melt,
-                    kind == SAMPLER_DYNAMICS ? &sampler.hybrid.simulation.particles
-                                             : &sampler.chain.particles,
+            measure(melt, mf_sampler_particles(&sampler),
                     &(struct pair_sums){.energy = sample[SAMPLER_ENERGY],
                                         .virial = sample[SAMPLER_VIRIAL]},
                     sum);

@@ -80,11 +80,7 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
                                                           .seed = 3}));
             assert_ok(mf_replicas_run(&replicas, &plan, 1, &progress, &listener));
             for (size_t k = 0; k < 2; k++) {
-                const struct sampler *sampler = &replicas.member[k].sampler;
-                const struct particles *particles = kind == SAMPLER_DYNAMICS
-                                                        ? &sampler->hybrid.simulation.particles
-                                                        : &sampler->chain.particles;
-                const double found = order(particles, EDGE);
+                const double found = order(mf_sampler_particles(&replicas.member[k].sampler), EDGE);
                 assert_true(scatter ? found < 12 : found > 0.1 * PARTICLES);
             }
             mf_replicas_clear(&replicas);
@@ -92,12 +88,13 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
     fluid_clear(&fluid);
 }
 
-/// Equilibration tunes moves to 40 % (mf_metropolis_equilibrate) and trajectories to 90 %
-/// (mf_hybrid_equilibrate); a gas without a potential takes all. Of 8 · 4 · 216 moves and 8 · 40
-/// trajectories; the tuning itself scatters by some hundredths.
+/// Equilibration tunes moves to 40 % (mf_metropolis_equilibrate) and trajectories to 80 % at their
+/// first chance (mf_hybrid_equilibrate), of which some hundredths are left at their last; a gas
+/// without a potential takes all. Of 8 · 4 · 216 moves and 8 · 40 trajectories; the tuning itself
+/// scatters by some hundredths.
 static void test_replicas_take_as_many_moves_as_their_sampler_is_tuned_to(void **state) {
     (void)state;
-    static const double wanted[] = {0.4, 0.9}, tolerance[] = {0.03, 0.08};
+    static const double wanted[] = {0.4, 0.97}, tolerance[] = {0.03, 0.03};
     const struct inverse_listener listener = {ignore, NULL};
     const struct inverse_progress progress = {0};
     struct replicas_plan plan = {.equilibration = 200, .block_samples = 2, .every = 1};
