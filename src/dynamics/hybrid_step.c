@@ -53,11 +53,38 @@ static double width_of(const struct bonded_curve *curve, double low, double high
     return fmax(0.5 * (to - from), spacing);
 }
 
-double mf_hybrid_step_variance(const struct bonded_curve *curve, int order, double temperature) {
+static double low_end(int order) {
+    return mf_bonded_kinds[order]->scale * mf_bonded_kinds[order]->low;
+}
+
+static double high_end(const struct bonded_curve *curve, int order, double temperature) {
     const struct bonded_kind *kind = mf_bonded_kinds[order];
-    const double high =
-        kind->is_length ? mf_bonded_reach(curve, temperature) : kind->scale * kind->high;
-    return pow(width_of(curve, kind->scale * kind->low, high, temperature), 2);
+    return kind->is_length ? mf_bonded_reach(curve, temperature) : kind->scale * kind->high;
+}
+
+double mf_hybrid_step_variance(const struct bonded_curve *curve, int order, double temperature) {
+    const double high = high_end(curve, order, temperature);
+    return pow(width_of(curve, low_end(order), high, temperature), 2);
+}
+
+/// Root mean square of U'' where the terms are: k_B T over the variance of a parabola, and more of
+/// a table whose values have noise, which longer steps do not follow.
+static double find_curvature(const struct bonded_curve *curve, int order, double temperature) {
+    enum { PLACES = 4000 };
+    const double low = low_end(order);
+    const double spacing = (high_end(curve, order, temperature) - low) / PLACES;
+    double min, energy, slope, before, squares = 0, all = 0;
+    mf_bonded_value(curve, mf_bonded_rest(curve), &min, NULL);
+    mf_bonded_value(curve, low + 0.5 * spacing, &energy, &before);
+    for (int k = 1; k < PLACES; k++) {
+        mf_bonded_value(curve, low + (k + 0.5) * spacing, &energy, &slope);
+        const double weight = exp(fmin(0, (min - energy) / temperature));
+        if (weight > 0)
+            squares += weight * pow((slope - before) / spacing, 2);
+        all += weight;
+        before = slope;
+    }
+    return sqrt(squares / all);
 }
 
 double mf_hybrid_step_squared_frequency(int order, double variance, double length,
@@ -71,19 +98,31 @@ double mf_hybrid_step_wrong(const struct integrator *integrator) {
     return integrator == &mf_aboba ? 0.1 : 0.25;
 }
 
-double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature) {
+/// ω² of the fastest group, each with the variance that is found for it.
+static double fastest_by(const struct molecules *molecules, double temperature,
+                         double (*find_variance)(const struct bonded_curve *, int, double)) {
     double length = INFINITY, fastest = 0;
     for (int g = 0; g < molecules->groups[BONDED_BOND]; g++)
         length =
             fmin(length, mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve, temperature));
     for (int order = 0; order < BONDED_KINDS; order++)
-        for (int g = 0; g < molecules->groups[order]; g++)
-            fastest = fmax(fastest, mf_hybrid_step_squared_frequency(
-                                        order,
-                                        mf_hybrid_step_variance(&molecules->group[order][g].curve,
-                                                                order, temperature),
-                                        length, temperature));
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const double variance =
+                find_variance(&molecules->group[order][g].curve, order, temperature);
+            fastest = fmax(fastest,
+                           mf_hybrid_step_squared_frequency(order, variance, length, temperature));
+        }
     return fastest;
+}
+
+double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature) {
+    return fastest_by(molecules, temperature, mf_hybrid_step_variance);
+}
+
+/// The variance that a parabola as bent as the curve is would have.
+static double narrow_variance(const struct bonded_curve *curve, int order, double temperature) {
+    return fmin(mf_hybrid_step_variance(curve, order, temperature),
+                temperature / find_curvature(curve, order, temperature));
 }
 
 static double shortest_weight(const struct many_body *many_body) {
@@ -106,7 +145,7 @@ struct hybrid_step mf_hybrid_step_find(const struct table *potential,
         step.first = step.longest = longest_step(shortest_weight(many_body), temperature);
     if (molecules == NULL)
         return step;
-    const double fast = share / sqrt(mf_hybrid_step_fastest(molecules, temperature));
+    const double fast = share / sqrt(fastest_by(molecules, temperature, narrow_variance));
     step.inner = (int64_t)fmax(1, fmin(MAX, ceil(step.first / fast)));
     step.first = fmin(step.first, (double)step.inner * fast);
     return step;

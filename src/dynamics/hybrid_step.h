@@ -31,8 +31,9 @@ double mf_hybrid_step_wrong(const struct integrator *integrator);
 /// ω² of the fastest group of molecules of mass 1 [1/τ²].
 double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature);
 
-/// By the fastest pairs and the fastest terms of molecules of mass 1; without pairs, by the range
-/// of local densities. Each may be NULL. Tested: test_hybrid.
+/// By the fastest pairs and the fastest terms of molecules of mass 1, those of tables with noise by
+/// their curvature; without pairs, by the range of local densities. Each may be NULL. Tested:
+/// test_hybrid.
 struct hybrid_step mf_hybrid_step_find(const struct table *potential,
                                        const struct molecules *molecules,
                                        const struct many_body *many_body, double temperature);
