@@ -207,6 +207,22 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
     }
 }
 
+void mf_json_fields_need_scale(struct json_object *object, const struct field *fields) {
+    char name[UNITS_NAME_SIZE];
+    if (!object->document->units.chosen)
+        return;
+    for (const struct field *field = fields; field->name; field++) {
+        const bool scaled = field->type == FIELD_NUMBER && field->initial != 0 &&
+                            (strstr(field->unit, "lambda") || strstr(field->unit, "tau"));
+        if (scaled && !field->required && !mf_json_has(object, field->name))
+            mf_json_fault(object, field->name,
+                          "missing: expected a number in %s (%s); the default, %g %s, would change "
+                          "with the density",
+                          mf_units_name(&object->document->units, field->unit, name), field->help,
+                          field->initial, field->unit);
+    }
+}
+
 static void fault_missing_choice(struct json_object *object, const char *key,
                                  const char *const *known) {
     char hint[JSON_LINE_SIZE / 4] = "";

@@ -43,6 +43,7 @@ static enum status read_group(struct molecules *molecules, int order, struct jso
     const size_t faults = mf_json_fault_count(object.document);
     TRY(mf_molecules_add_group(molecules, order, name, law));
     mf_json_fields(&object, law->fields, group->curve.parameters);
+    mf_json_fields_need_scale(&object, law->fields);
     if (bonded_is_table(law) && mf_json_fault_count(object.document) == faults)
         TRY(load_points(&group->curve, order, &object, units));
     mf_json_finish(&object);
@@ -126,7 +127,7 @@ enum status mf_scene_groups_open(struct molecules *molecules, struct json_object
 /// A fault of a name that no molecule's terms have.
 static void fault_unused(struct json_object *object, const char *name, int order,
                          const struct molecules *molecules) {
-    const char *known[MOLECULES_MAX_GROUPS];
+    const char *known[MOLECULES_MAX_GROUPS] = {0};
     const size_t count = (size_t)molecules->groups[order];
     char hint[1024];
     for (size_t g = 0; g < count; g++)

@@ -176,6 +176,7 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
         const size_t faults = mf_json_fault_count(object.document);
         TRY(mf_curve_create(curve, family));
         mf_json_fields(&object, family->fields, curve->parameters);
+        mf_json_fields_need_scale(&object, family->fields);
         if (curve_is_sampled(family) && mf_json_fault_count(object.document) == faults)
             TRY(load_points(curve, unit, &object, units));
         mf_curve_scale(curve, mf_units_factor(units, "lambda"), mf_units_factor(units, unit));

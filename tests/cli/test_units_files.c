@@ -317,6 +317,30 @@ static void test_bad_units_are_one_line_with_file_and_key(void **state) {
     }
 }
 
+/// Where the program chooses lambda by the density, a law has no length by default: 2.5 lambda of
+/// one density would be another potential at the next.
+static void test_lengths_of_laws_have_no_default_that_follows_the_density(void **state) {
+    static const char scene[] =
+        "{\"units\": \"nm-ps\", \"temperature\": 300, \"box\": [3, 3, 3],\n"
+        "\"particles\": {\"count\": 81, \"mass\": 40}, \"time_step\": 0.001,\n"
+        "\"conservative\": {\"law\": \"lennard-jones\", \"sigma\": 0.34},\n"
+        "\"dissipative\": {\"law\": \"none\"},\n"
+        "\"measure\": {\"equilibration\": 1, \"samples\": 1}}\n";
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_int_equal(run_program_lines(result.err), 1);
+    assert_contains(result.err, "scene.json: conservative.cutoff: missing: expected a number in nm "
+                                "(distance beyond which it is 0); the default, 2.5 lambda, would "
+                                "change with the density");
+    small_inputs_write(*state, "scene.json", scene, "0.34", "0.34, \"cutoff\": 0.85");
+    simulate("scene.json", "out");
+    small_inputs_write(*state, "scene.json", scene, "\"nm-ps\"",
+                       "{\"system\": \"nm-ps\", \"length\": 0.34}");
+    simulate("scene.json", "known"); // lambda is the file's own
+    assert_close(results_number("known/used.json", "conservative.cutoff"), 0.85, 1e-12);
+}
+
 /// Every unit of every field table: in brackets in the third cell of a row of keys.
 static void test_units_of_all_field_tables_are_known(void **state) {
     (void)state;
@@ -369,6 +393,7 @@ int main(void) {
         TEST(test_fits_speak_physical_units),
         TEST(test_a_mass_density_needs_a_mass),
         TEST(test_bad_units_are_one_line_with_file_and_key),
+        TEST(test_lengths_of_laws_have_no_default_that_follows_the_density),
         TEST(test_units_of_all_field_tables_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
