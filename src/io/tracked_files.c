@@ -374,13 +374,26 @@ static enum status claim(struct tracked_files *own, const char *name) {
     return mf_manifest_enter(&own->list, &entry, 1);
 }
 
-enum status mf_tracked_files_claim(const char *path) {
+static enum status claim_path(const char *path, bool later) {
     const char *name;
+    enum status status = STATUS_OK;
     mf_process_lock();
     struct tracked_files *own = find(path, &name);
-    const enum status status = own ? claim(own, name) : STATUS_OK;
+    if (own) {
+        own->list.later = later;
+        status = claim(own, name);
+        own->list.later = false;
+    }
     mf_process_unlock();
     return status;
+}
+
+enum status mf_tracked_files_claim(const char *path) {
+    return claim_path(path, false);
+}
+
+enum status mf_tracked_files_claim_later(const char *path) {
+    return claim_path(path, true);
 }
 
 void mf_tracked_files_remove(const char *path) {

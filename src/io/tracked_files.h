@@ -82,6 +82,9 @@ void mf_tracked_files_remove_all(struct tracked_files *own);
 /// not its own, was changed since or is read, or if a link leads there; IO; NO_MEMORY.
 enum status mf_tracked_files_claim(const char *path) MUST_USE;
 
+/// The same of a file that comes to the disk later (mf_output_open_later), as does its entry.
+enum status mf_tracked_files_claim_later(const char *path) MUST_USE;
+
 /// Remove a file that is not wanted any more, if it is its own.
 void mf_tracked_files_remove(const char *path);
 
