@@ -343,9 +343,10 @@ static void doubt(struct run *run, const struct verification *verification) {
     if (run->doubted)
         standing->converged = standing->exhausted = false;
     else if (standing->converged &&
-             mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
-                                     (const double *const *)run->curve_error, &run->fit.scene.units,
-                                     standing->reason)) {
+             (mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
+                                      (const double *const *)run->curve_error,
+                                      &run->fit.scene.units, standing->reason) ||
+              mf_fit_closing_is_missed(&run->fit, verification, standing->reason))) {
         standing->converged = false;
         standing->exhausted = true;
     }
