@@ -436,6 +436,7 @@ enum status mf_target_sanity_report(const struct target_files *files, const stru
         warn_of_density(&view, listener);
     }
     mf_target_sanity_report_groups(files, scene, listener);
+    mf_target_sanity_report_pressure(files, scene, listener);
     mf_target_sanity_report_normalisation(&files->normalisation, listener);
     char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))

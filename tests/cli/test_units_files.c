@@ -291,6 +291,15 @@ static void test_bad_units_are_one_line_with_file_and_key(void **state) {
         {"{" PHYSICAL "\"temperature\": 300, \"box\": [0.3, 0.3, 0.3], \"particles\": {\"count\": "
          "81, \"mass\": 18}}",
          "scene.json: box: 18 u a bead make 89.7 g/cm^3"},
+        {"{" PHYSICAL "\"temperature\": 300, \"box\": [3, 3, 3], \"particles\": {\"count\": 81, "
+         "\"mass\": 2.99e-26}}",
+         "scene.json: particles.mass: 2.99e-26 u is less than any atom has: masses are "
+         "in u, which is g/mol; 1 kg is 6.02214e+26 u"},
+        {"{" PHYSICAL
+         "\"temperature\": 300, \"box\": [3, 3, 3], \"particles\": {\"types\": {\"A\": "
+         "80, \"B\": 80}, \"mass\": {\"A\": 18, \"B\": 0.032}}}",
+         "scene.json: particles.mass: 0.032 u is less than any atom has: masses are in "
+         "u, which is g/mol; 1 kg/mol is 1000 u"},
         {"{" PHYSICAL "\"temperature\": 300, " BOX
          ", \"conservative\": {\"law\": \"table\", \"file\": \"bad.tsv\"}}",
          "bad.tsv: column 1: \"ps\" is not a unit of the same kind as nm"},
