@@ -327,10 +327,10 @@ static const char *commands_of(const struct export_job *job) {
 
 static void explain(const struct export_job *job, FILE *stream) {
     fprintf(stream,
-            "GROMACS reads tables up to version 2019. It has no DPD%s: its integrator sd, "
-            "a bath of each particle,\nkeeps g(r), energy and pressure; the dynamics is "
-            "not the result's: diffusion and all else that moves differs.\n",
-            job->model->setup.omega ? " and so no omega" : "");
+            "GROMACS reads tables up to version 2019. It has no DPD%s: its integrator sd "
+            "is a bath of each particle.\n%s\n",
+            export_model_has_friction(job->model) ? " and so no omega" : "",
+            mf_export_dynamics_kept(job));
 }
 
 const struct export_engine mf_export_gromacs = {
