@@ -85,6 +85,12 @@ static enum status read_columns(const char *file, const char *const unit[2], dou
     TRY(core ? mf_data_table_read_core(&table, file) : mf_data_table_read(&table, file, 2));
     if (core && is_of_gromacs(&table))
         TRY(take_gromacs(&table, file));
+    else if (is_of_gromacs(&table))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: seven columns without names, as GROMACS has a potential of pairs, "
+            "which this is not: leave two, the argument and the values",
+            file);
     if (mf_data_table_is_numbered(&table))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: column 1 numbers the rows: leave it out, so that %s is first",

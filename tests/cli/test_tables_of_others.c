@@ -134,6 +134,11 @@ static void test_tables_of_others_are_refused_when_they_say_too_little(void **st
     refuse(*state, scene, INDEXED, "column 1 numbers the rows: leave it out, so that r is first");
     refuse(*state, scene, GROMACS_CHARGES,
            "write r and the potential, C6 g + C12 h, in two columns");
+    static const char friction[] =
+        "{\"box\": [4, 4, 4], \"time_step\": 0.01, \"particles\": {\"count\": 150},\n"
+        "\"dissipative\": {\"law\": \"table\", \"file\": \"law.tsv\"}}\n";
+    refuse(*state, friction, GROMACS_C12,
+           "seven columns without names, as GROMACS has a potential of pairs, which this is not");
     refuse(*state, scene, SECTIONS, "law.tsv:48: a second section of LAMMPS begins");
 }
 
