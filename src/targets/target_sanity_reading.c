@@ -34,6 +34,23 @@ void mf_target_sanity_report_pressure(const struct target_files *files, const st
                           unit, largest, unit[0] ? unit : " units of k_B T_0/lambda^3");
 }
 
+/// Where pairs do not come g is 0, and a fluid of soft cores has pairs from r = 0 on.
+static void warn_of_missing_rows(const struct target_rdf *target, const char *name,
+                                 const struct scene *scene,
+                                 const struct target_sanity_listener *listener) {
+    static const double seen = 0.05, standard_errors = 3;
+    double length;
+    const char *unit = mf_target_sanity_length(scene, &length);
+    if (target->bins.low < 0.5 * target->bins.width ||
+        target->g[0] < fmax(seen, standard_errors * target->error[0]))
+        return;
+    mf_target_sanity_warn(listener,
+                          "mesofit: warning: target.%s: its first row, at %.4g %s, has g = %.3g: "
+                          "nearer pairs are taken for none, as if rows of 0 were missing; give g "
+                          "from where it is 0, or from r = 0",
+                          name, mf_rdf_bins_centre(&target->bins, 0) * length, unit, target->g[0]);
+}
+
 void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
                                      const struct scene *scene,
                                      const struct target_sanity_listener *listener) {
@@ -45,6 +62,7 @@ void mf_target_sanity_report_reading(const struct target_rdf *target, const char
         mf_target_sanity_warn(listener,
                               "target %s: g is below 0 in %zu rows, by %.2g at most: taken as 0",
                               name, target->negative, -target->min);
+    warn_of_missing_rows(target, name, scene, listener);
     if (r->points == 0)
         return;
     if (r->assumed)

@@ -174,6 +174,28 @@ static void test_fit_warns_of_a_pressure_that_no_fluid_has(void **state) {
     assert_null(strstr(result.out, "target.pressure"));
 }
 
+/// Whoever leaves out rows of 0 may leave out more.
+static void test_fit_warns_of_a_table_that_begins_within_its_core(void **state) {
+    static struct run_program_result result;
+    static const char run[] = "{\"target\": {\"rdf\": {\"file\": \"part.tsv\"}}, \"scene\": "
+                              "{\"density\": 0.8, \"temperature\": 1}}\n";
+    link_to("targets/lennard-jones/rdf.tsv", "whole.tsv");
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    char *const whole = temporary_folder_read("whole.tsv");
+    for (int from = 0; from < 2; from++) {
+        const char *const rest = strstr(whole, from ? "\n0.95\t" : "\n0.81\t");
+        assert_non_null(rest);
+        small_inputs_write(*state, "part.tsv", rest + 1, NULL, NULL);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.out,
+                                "warning: target.rdf: its first row, at 0.95 lambda, "
+                                "has g = 0.274: nearer pairs are taken for none") != NULL,
+                         from);
+    }
+    free(whole);
+}
+
 /// Gaussian-core particles have no packing that is too dense, but ten times the density asks for
 /// less than no fluctuations; hard spheres a thousandth of their close packing are a gas.
 static void test_fit_looks_at_densities_of_fluids_without_layers(void **state) {
@@ -469,6 +491,7 @@ int main(void) {
         TEST(test_simulate_refuses_units_that_cannot_be),
         TEST(test_fit_warns_of_targets_that_hardly_can_be),
         TEST(test_fit_warns_of_a_pressure_that_no_fluid_has),
+        TEST(test_fit_warns_of_a_table_that_begins_within_its_core),
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_names_demixing_where_the_integrals_say_so),
