@@ -149,7 +149,7 @@ static void read_text_field(struct json_object *object, const struct field *fiel
     strcpy(member + folder, text);
     if (field->type == FIELD_FILE && object->document->inputs &&
         mf_input_files_add(object->document->inputs, member) != STATUS_OK)
-        mf_json_fault(object, field->name, "%s", mf_status_message());
+        mf_json_fault(object, field->name, "%s", mf_status_marked());
 }
 
 static void read_field(struct json_object *object, const struct field *field, const cJSON *item,

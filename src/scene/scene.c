@@ -306,7 +306,7 @@ static void enter_molecules(struct scene *scene, struct json_object *object) {
         return;
     if (mf_json_fault_count(object->document) == 0) {
         if (mf_molecules_check(molecules, &setup->box) != STATUS_OK)
-            mf_json_fault(object, NULL, "%s", mf_status_message());
+            mf_json_fault(object, NULL, "%s", mf_status_marked());
         else
             mf_scene_molecules_warn_of_box(&scene->molecules, &setup->box, setup->temperature);
     }

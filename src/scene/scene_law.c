@@ -149,9 +149,9 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
                  : read_columns(parameters->file, (const char *[]){"lambda", unit}, 0,
                                 curve->family == &mf_sampled_family, units, &r, &value, &count);
     if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
+        mf_json_fault(object, "file", "%s", mf_status_marked());
     else if (mf_sampled_set_points(curve, r, value, count) != STATUS_OK)
-        mf_json_fault(object, "file", "%s: %s", parameters->file, mf_status_message());
+        mf_json_fault(object, "file", "%s: %s", parameters->file, mf_status_marked());
     mf_memory_free(r);
     mf_memory_free(value);
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
@@ -187,7 +187,7 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
             TRY(load_points(curve, unit, &object, units));
         mf_curve_scale(curve, mf_units_factor(units, "lambda"), mf_units_factor(units, unit));
         if (mf_json_fault_count(object.document) == faults && mf_curve_check(curve) != STATUS_OK)
-            mf_json_fault(&object, NULL, "%s", mf_status_message());
+            mf_json_fault(&object, NULL, "%s", mf_status_marked());
         if (!is_usable(curve))
             mf_curve_clear(curve);
     }

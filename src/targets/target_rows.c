@@ -141,7 +141,7 @@ enum status mf_target_rows_read_votca(struct target_rows *rows, const char *file
 enum status mf_target_rows_fault(struct json_object *object, const char *key, enum status status) {
     if (status == STATUS_OK || status == STATUS_NO_MEMORY)
         return status;
-    mf_json_fault(object, key, "%s", mf_status_message());
+    mf_json_fault(object, key, "%s", mf_status_marked());
     return STATUS_OK;
 }
 

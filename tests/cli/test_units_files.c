@@ -288,6 +288,10 @@ static void test_bad_units_are_one_line_with_file_and_key(void **state) {
          "scene.json: particles.mass: -5 is out of range; allowed: above 0 u"},
         {"{" PHYSICAL "\"temperature\": 300, \"box\": [-3, 3, 3], \"particles\": {\"count\": 81}}",
          "scene.json: box[0]: -3 is out of range; allowed: above 0"},
+        {"{" PHYSICAL "\"temperature\": 300, \"box\": [1.9, 3, 3], \"particles\": {\"count\": 81}, "
+         "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 50, \"cutoff\": 1}}",
+         "scene.json: the box is too small: its shortest edge 1.9 nm is below twice the cutoff 1 "
+         "nm"},
         {"{" PHYSICAL "\"temperature\": 300, \"box\": [0.3, 0.3, 0.3], \"particles\": {\"count\": "
          "81, \"mass\": 18}}",
          "scene.json: box: 18 u a bead make 89.7 g/cm^3"},
