@@ -7,11 +7,7 @@
 
 #include <stddef.h>
 
-enum {
-    COMMAND_MAX_OPTIONS = 32,
-    COMMAND_MAX_COMMANDS = 16,
-    COMMAND_OPTION_SIZE = 64
-};
+enum { COMMAND_MAX_OPTIONS = 32, COMMAND_MAX_COMMANDS = 16, COMMAND_OPTION_SIZE = 64 };
 
 /// An option of one subcommand. It may take the place of a common one.
 struct command_option {
@@ -45,9 +41,9 @@ struct command_line {
 
 struct command {
     const char *name;
-    const char *usage;   ///< arguments, such as "SCENE.json"
-    const char *summary; ///< one line
-    size_t min_files, max_files; ///< SIZE_MAX: any number
+    const char *usage;                    ///< arguments, such as "SCENE.json"
+    const char *summary;                  ///< one line
+    size_t min_files, max_files;          ///< SIZE_MAX: any number
     const struct command_option *options; ///< its own, up to one without a name; NULL: none
     int threads;                          ///< unless --threads says more; 0: all processors
     enum status (*run)(const struct command_line *line);

@@ -88,7 +88,7 @@ static void make_temporary(struct output *output) {
 /// The whole folder may have gone.
 static enum status fail(const struct output *output, int error) {
     if (error == ENOENT)
-        TRY(mf_tracked_files_claim(output->path));
+        TRY(mf_tracked_files_claim(output->path, false));
     return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
 }
 
@@ -103,7 +103,7 @@ static enum status open_output(struct output *output, const char *path, bool lat
         return output->stream ? STATUS_OK
                               : mf_status_fail(STATUS_IO, "/dev/null: %s", strerror(errno));
     }
-    TRY(later ? mf_tracked_files_claim_later(output->path) : mf_tracked_files_claim(output->path));
+    TRY(mf_tracked_files_claim(output->path, later));
     make_temporary(output);
     if (output->file >= 0)
         output->stream = fopencookie(

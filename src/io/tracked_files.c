@@ -374,7 +374,7 @@ static enum status claim(struct tracked_files *own, const char *name) {
     return mf_manifest_enter(&own->list, &entry, 1);
 }
 
-static enum status claim_path(const char *path, bool later) {
+enum status mf_tracked_files_claim(const char *path, bool later) {
     const char *name;
     enum status status = STATUS_OK;
     mf_process_lock();
@@ -386,14 +386,6 @@ static enum status claim_path(const char *path, bool later) {
     }
     mf_process_unlock();
     return status;
-}
-
-enum status mf_tracked_files_claim(const char *path) {
-    return claim_path(path, false);
-}
-
-enum status mf_tracked_files_claim_later(const char *path) {
-    return claim_path(path, true);
 }
 
 void mf_tracked_files_remove(const char *path) {

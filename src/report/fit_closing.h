@@ -24,8 +24,8 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
                              char reason[INVERSE_REASON_SIZE]);
 
 /// Whether independent simulations of a friction weight that was found are farther from a fitted
-/// target than its errors: such a fit has not converged to it, however well the method settled. Why,
-/// into `reason`. Tested: test_fit_closing.
+/// target than its errors: such a fit has not converged to it, however well the method settled.
+/// Why, into `reason`. Tested: test_fit_closing.
 bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verification *verification,
                               char reason[INVERSE_REASON_SIZE]);
 

@@ -290,7 +290,7 @@ static int append(const struct snapshot *snapshot, const struct snapshot_format 
 static enum status write_appended(const struct snapshot *snapshot,
                                   const struct snapshot_format *format, const char *path,
                                   int64_t *size) {
-    TRY(mf_tracked_files_claim_later(path));
+    TRY(mf_tracked_files_claim(path, true));
     const int file = open(path, O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     const int error = file < 0 ? errno : append(snapshot, format, file, size);
     if (file >= 0)
