@@ -179,12 +179,12 @@ _OTHERS = re.compile(r"(^|_)(history|flat|lower|upper)$|^now(_|$)")
 
 class Curves(Mapping):  # type: ignore[type-arg]
     """Curves of one kind: a table for each pair of types, by the name "A-B"; "" of beads that are
-    alike. A single one has its columns, their units and its plot directly.
+    alike. A single one has its columns, their units, its plot and its conversions directly.
 
     Notes
     -----
     A mapping: ``curves["A-B"]`` is a `Table`. Of a single one ``curves["phi"]`` is a column, shape
-    (rows,).
+    (rows,), and ``numpy.asarray(curves)`` has all.
     """
 
     def __init__(self, name: str, tables: dict[str, Table]) -> None:
@@ -217,6 +217,40 @@ class Curves(Mapping):  # type: ignore[type-arg]
     def units(self) -> tuple[str, ...]:
         """Units of the columns of the only table, a tuple of str."""
         return self.table.units
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Array:
+        return self.table.__array__(dtype, copy)
+
+    def to_dict(self) -> dict[str, Array]:
+        """Columns of the only table by their names.
+
+        Returns
+        -------
+        dict of str to array, shape (rows,)
+
+        Raises
+        ------
+        InputError
+            There are several.
+        """
+        return self.table.to_dict()
+
+    def to_pandas(self) -> Any:
+        """The only table as a DataFrame of pandas, units in its ``attrs["units"]``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A copy.
+
+        Raises
+        ------
+        ImportError
+            There is no pandas.
+        InputError
+            There are several.
+        """
+        return self.table.to_pandas()
 
     def __getitem__(self, part: str) -> Table | Any:
         if part in self._tables:

@@ -32,6 +32,8 @@ def test_results_and_tables_show_themselves(fitted, monkeypatch):
     only = fitted.potential
     assert only.columns == only.table.columns and only.units == only.table.units
     assert only.columns[:2] == ("r", "phi") and only.units[0] == "lambda"
+    assert np.array_equal(only, only.table.values, equal_nan=True) and len(only.to_dict()) > 3
+    assert np.array_equal(only.to_dict()["force"], only["force"], equal_nan=True)
     assert repr(table).startswith("<Table rdf: ") and "fit in" in repr(fitted)
     with pytest.raises(ImportError, match="pip install matplotlib"):
         fitted.potential.plot()

@@ -13,6 +13,6 @@ const struct command cmd_compare = {
     .usage = "DIR DIR...",
     .summary = "compare fits and simulations: a table, a figure",
     .min_files = 1,
-    .max_files = COMMAND_MAX_FILES,
+    .max_files = SIZE_MAX,
     .run = run,
 };

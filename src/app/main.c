@@ -40,7 +40,7 @@ static int exit_code(enum status status) {
 
 static enum status run(size_t count, const char *const *words) {
     const struct command *command = NULL;
-    struct command_line line = {.live = mf_cmd_live_run};
+    CLEARED_BY(mf_command_line_clear) struct command_line line = {.live = mf_cmd_live_run};
     if (strcmp(words[0], "watch") == 0)
         return mf_status_fail(STATUS_BAD_INPUT, "the command \"watch\" was removed: use mesofit "
                                                 "live, or progress.json in the run's folder");

@@ -292,7 +292,8 @@ static void print_body(FILE *stream, const struct look *look, const struct topic
         "{\"law\": …}, {\"law\": \"none\"} for none, \"dynamics\" by {\"integrator\": …}, "
         "\"method\" by {\"name\": …}. Units are reduced: energy k_B T_0, length lambda, mass mu, "
         "time tau = lambda sqrt(mu/(k_B T_0)). With \"units\" at its top a file is in nm, ps, u, "
-        "kJ/mol, K, bar, or angstrom, fs, g/mol, kcal/mol, K, atm.");
+        "kJ/mol, K, bar, or angstrom, fs, g/mol, kcal/mol, K, atm, and lengths and strengths of "
+        "laws have no defaults unless \"units\" gives the length.");
     print_topics(stream, look, topics, count);
 }
 

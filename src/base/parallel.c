@@ -104,7 +104,7 @@ static void try_one(struct parallel_call *call, size_t task) {
         mf_task_log_note(call, task, result);
     if (status == STATUS_OK && tasks->take)
         tasks->take(tasks->context, task, result);
-    parallel_call_end_task(call, task, status, mf_status_message(), seconds);
+    parallel_call_end_task(call, task, status, mf_status_marked(), seconds);
     pthread_mutex_unlock(&call->lock);
     mf_memory_free(result);
 }

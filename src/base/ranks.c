@@ -267,7 +267,7 @@ static void merge(struct report *all, int rank, const struct report *other) {
         all->status = other->status != STATUS_OK ? other->status : STATUS_BAD_INPUT;
         mf_status_fail((enum status)all->status, "rank %d on %s: %s", rank, job.host[rank],
                        other->status != STATUS_OK ? other->message : diverged);
-        memcpy(all->message, mf_status_message(), sizeof all->message);
+        memcpy(all->message, mf_status_marked(), sizeof all->message);
     }
     if (!is_same_call || (!is_alike && !all->is_check))
         stop(mf_status_fail((enum status)all->status, "%s", all->message));
@@ -318,7 +318,7 @@ enum status mf_ranks_check(enum status status, uint64_t digest) {
     if (job.count == 1)
         return status;
     if (status != STATUS_OK)
-        memcpy(all.message, mf_status_message(), sizeof all.message);
+        memcpy(all.message, mf_status_marked(), sizeof all.message);
     meet(&all, NULL);
     return all.status == STATUS_OK ? STATUS_OK
                                    : mf_status_fail((enum status)all.status, "%s", all.message);

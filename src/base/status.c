@@ -3,18 +3,19 @@
 
 #include "base/visible.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 enum { MESSAGE_SIZE = STATUS_MESSAGE_SIZE };
 
-static _Thread_local char message[MESSAGE_SIZE];
+static _Thread_local char message[MESSAGE_SIZE], stripped[MESSAGE_SIZE];
 
 /// Messages quote files, whose texts may be anything.
 static int print_visible(char *text, const char *format, va_list arguments) {
     char raw[MESSAGE_SIZE];
     vsnprintf(raw, sizeof raw, format, arguments);
-    mf_visible_copy(text, MESSAGE_SIZE, raw, "\n");
+    mf_visible_copy(text, MESSAGE_SIZE, raw, "\n\x1f");
     return (int)strlen(text);
 }
 
@@ -41,8 +42,25 @@ enum status mf_status_prefix(enum status status, const char *format, ...) {
     return status;
 }
 
-const char *mf_status_message(void) {
+const char *mf_status_marked(void) {
     return message;
+}
+
+void mf_status_strip(char *text) {
+    char *to = text;
+    bool inside = false;
+    for (; *text; text++) {
+        inside = inside != (*text == STATUS_MARK);
+        if (!inside && *text != STATUS_MARK)
+            *to++ = *text;
+    }
+    *to = '\0';
+}
+
+const char *mf_status_message(void) {
+    memcpy(stripped, message, sizeof stripped);
+    mf_status_strip(stripped);
+    return stripped;
 }
 
 const char *mf_status_name(enum status status) {

@@ -17,7 +17,7 @@ static void write_bytes(FILE *stream, const struct task_record *head,
                         const struct parallel_tasks *tasks, const void *result) {
     struct memory_span span[PARALLEL_MAX_SPANS];
     if (head->status != STATUS_OK) {
-        fwrite(mf_status_message(), 1, strlen(mf_status_message()) + 1, stream);
+        fwrite(mf_status_marked(), 1, strlen(mf_status_marked()) + 1, stream);
         return;
     }
     if (tasks->result_size > 0)

@@ -2,6 +2,7 @@
 #include "commands/command.h"
 
 #include "base/fields.h"
+#include "base/memory.h"
 #include "base/nearest.h"
 
 #include <errno.h>
@@ -123,8 +124,6 @@ static enum status parse_words(const struct command *command, size_t count,
         int used = 1;
         if (words[k][0] == '-')
             TRY(parse_option(command, words[k], k + 1 < count ? words[k + 1] : NULL, line, &used));
-        else if (line->file_count == COMMAND_MAX_FILES)
-            return mf_status_fail(STATUS_BAD_INPUT, "more than %d files", COMMAND_MAX_FILES);
         else
             line->files[line->file_count++] = words[k];
         k += (size_t)used;
@@ -134,6 +133,7 @@ static enum status parse_words(const struct command *command, size_t count,
 
 enum status mf_command_parse(const struct command *command, size_t count, const char *const *words,
                              struct command_line *line) {
+    TRY_ARRAY(line->files, count + 1);
     line->options.threads = command->threads > 0 ? command->threads : omp_get_max_threads();
     TRY(parse_words(command, count, words, line));
     if (line->file_count < command->min_files || line->file_count > command->max_files)
@@ -142,6 +142,11 @@ enum status mf_command_parse(const struct command *command, size_t count, const 
     if (line->options.resume && line->options.force)
         return mf_status_fail(STATUS_BAD_INPUT, "--resume and --force exclude each other");
     return STATUS_OK;
+}
+
+void mf_command_line_clear(struct command_line *line) {
+    mf_memory_free(line->files);
+    line->files = NULL;
 }
 
 enum status mf_command_find(const struct command *const *list, const char *name,

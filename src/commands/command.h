@@ -7,12 +7,7 @@
 
 #include <stddef.h>
 
-enum {
-    COMMAND_MAX_FILES = 64,
-    COMMAND_MAX_OPTIONS = 32,
-    COMMAND_MAX_COMMANDS = 16,
-    COMMAND_OPTION_SIZE = 64
-};
+enum { COMMAND_MAX_OPTIONS = 32, COMMAND_MAX_COMMANDS = 16, COMMAND_OPTION_SIZE = 64 };
 
 /// An option of one subcommand. It may take the place of a common one.
 struct command_option {
@@ -37,7 +32,7 @@ typedef enum status command_live(const char *file, const struct run_options *opt
 struct command_line {
     struct run_options options;
     command_live *live; ///< NULL: there is nobody who serves pages, or reads what is printed
-    const char *files[COMMAND_MAX_FILES];
+    const char **files; ///< shape [file_count], owned
     size_t file_count;
     /// Of each of the subcommand's own options its value, or its name if it takes none; NULL if it
     /// was not given.
@@ -46,9 +41,9 @@ struct command_line {
 
 struct command {
     const char *name;
-    const char *usage;   ///< arguments, such as "SCENE.json"
-    const char *summary; ///< one line
-    size_t min_files, max_files;
+    const char *usage;                    ///< arguments, such as "SCENE.json"
+    const char *summary;                  ///< one line
+    size_t min_files, max_files;          ///< SIZE_MAX: any number
     const struct command_option *options; ///< its own, up to one without a name; NULL: none
     int threads;                          ///< unless --threads says more; 0: all processors
     enum status (*run)(const struct command_line *line);
@@ -65,9 +60,10 @@ enum status mf_command_find(const struct command *const *list, const char *name,
                             const struct command **command) MUST_USE;
 
 /// Take the words behind a command's name, which are borrowed, into a line that may have been
-/// begun. Fails: BAD_INPUT with the line that the program prints.
+/// begun. Fails: BAD_INPUT with the line that the program prints; NO_MEMORY.
 enum status mf_command_parse(const struct command *command, size_t count, const char *const *words,
                              struct command_line *line) MUST_USE;
+void mf_command_line_clear(struct command_line *line);
 
 /// Take the value of --box, three lengths or one of a cube; NULL leaves it alone. Fails: BAD_INPUT.
 enum status mf_command_read_box(const char *text, double box[3]) MUST_USE;

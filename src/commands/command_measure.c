@@ -204,7 +204,7 @@ const struct command mf_command_measure = {
     .usage = "TRAJECTORY...",
     .summary = "a target of a simulation of atoms: beads, g(r), motion",
     .min_files = 1,
-    .max_files = COMMAND_MAX_FILES,
+    .max_files = SIZE_MAX,
     .options = options,
     .run = run,
 };

@@ -123,7 +123,8 @@ static enum status power_omega_check(void *parameters) {
     if (p->inner_cutoff < p->cutoff)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "the inner_cutoff %g is not below the cutoff %g: omega would be 0",
+                          "the inner_cutoff %g" STATUS_LENGTH
+                          " is not below the cutoff %g" STATUS_LENGTH ": omega would be 0",
                           p->inner_cutoff, p->cutoff);
 }
 

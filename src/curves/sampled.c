@@ -88,7 +88,9 @@ enum status mf_sampled_set_points(struct curve *curve, const double *r, const do
     const double last = r[count - 1];
     // One part in 10^9 forgives a cutoff that was rounded when the table was written.
     if (p->cutoff > last * (1 + 1e-9))
-        return mf_status_fail(STATUS_BAD_INPUT, "the table ends at r = %g, before the cutoff %g",
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the table ends at r = %g" STATUS_LENGTH
+                              ", before the cutoff %g" STATUS_LENGTH,
                               last, p->cutoff);
     if (p->cutoff == 0 || p->cutoff > last)
         p->cutoff = last;

@@ -41,7 +41,8 @@ static enum status sanyal_shell_check(void *parameters) {
     if (p->inner_cutoff < p->cutoff)
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "the inner_cutoff %g is not below the cutoff %g: the weight would jump",
+                          "the inner_cutoff %g" STATUS_LENGTH
+                          " is not below the cutoff %g" STATUS_LENGTH ": the weight would jump",
                           p->inner_cutoff, p->cutoff);
 }
 

@@ -30,8 +30,8 @@ static enum status begin_one(const struct fit_file *fit, const struct inverse_pr
                                             .thermodynamics = true,
                                             .threads = 1,
                                             .seed = problem->seed};
-    return mf_units_add_to_message(&fit->scene.units,
-                                   mf_measurement_init(&measurement, &laws.problem, &setup));
+    return mf_units_convert_message(&fit->scene.units,
+                                    mf_measurement_init(&measurement, &laws.problem, &setup));
 }
 
 /// The same with each number at the ends of its range.

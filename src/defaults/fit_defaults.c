@@ -303,6 +303,7 @@ static enum status choose_friction(struct fit_choice *c) {
         "a bead forgets its velocity in %s",
         mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
         mf_fit_choice_text(c, "lambda", cutoff, end), mf_fit_choice_text(c, "tau", time, memory));
+    c->choices->thermostat = true;
     return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff);
 }
 

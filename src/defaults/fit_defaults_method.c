@@ -23,7 +23,9 @@ static enum status choose_power(struct fit_choice *c, double largest, double cut
     const bool steep = mf_fit_choice_lacks(c->root, "unknowns.omega.fixed", "exponent");
     char most[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
     largest *= steep ? steeper : 1;
-    mf_fit_choice_note(c, "omega: a power law of 1 - r/(%s), at r = 0 from 0 to %s",
+    mf_fit_choice_note(c,
+                       "omega: a power law of 1 - r/(%s), a cutoff that the fit does not change, "
+                       "and at r = 0 from 0 to %s",
                        mf_fit_choice_text(c, "lambda", cutoff, to),
                        mf_fit_choice_text(c, "sqrt(mu/tau)", largest, most));
     return mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", largest);

@@ -154,7 +154,7 @@ enum status mf_fit_densities_read(struct fit_file *fit, struct json_object *root
         return STATUS_OK;
     }
     if (check_bins(curve) != STATUS_OK) {
-        mf_json_fault(root, "target", "%s", mf_status_message());
+        mf_json_fault(root, "target", "%s", mf_status_marked());
         return STATUS_OK;
     }
     complete_errors(curve);

@@ -371,7 +371,7 @@ static enum status check_corners(struct json_object *numbers, const struct curve
         status = mf_curve_check(&other);
     }
     if (status != STATUS_OK)
-        mf_json_fault(numbers, number[0]->name, "at ends of the ranges %s", mf_status_message());
+        mf_json_fault(numbers, number[0]->name, "at ends of the ranges %s", mf_status_marked());
     mf_memory_free(parameters);
     return STATUS_OK;
 }

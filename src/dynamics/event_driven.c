@@ -141,9 +141,11 @@ static enum status check_box(const struct grid *grid) {
     for (int d = 0; d < grid->box->dimensions; d++) {
         const double length = grid->box->length[d];
         if (length < (is_walled(grid, d) ? 2 : 4) * grid->largest)
-            return mf_status_fail(
-                STATUS_BAD_INPUT, "box: its edge %g is below %s of the largest particle, %g",
-                length, is_walled(grid, d) ? "the diameter" : "two diameters", 2 * grid->largest);
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "box: its edge %g" STATUS_LENGTH
+                                  " is below %s of the largest particle, %g" STATUS_LENGTH,
+                                  length, is_walled(grid, d) ? "the diameter" : "two diameters",
+                                  2 * grid->largest);
     }
     return STATUS_OK;
 }
@@ -178,7 +180,7 @@ static enum status check_walls(const struct grid *grid, const uint32_t *id) {
                 return mf_status_fail(
                     STATUS_BAD_INPUT,
                     "particle %u overlaps a wall of the axis %c at the start: its "
-                    "centre is %.10g from it, its radius %g",
+                    "centre is %.10g" STATUS_LENGTH " from it, its radius %g" STATUS_LENGTH,
                     id[k], "xyz"[d], near, radius);
         }
     return STATUS_OK;
@@ -197,8 +199,9 @@ static enum status check_start(const struct particles *particles, const double *
         goto done;
     const uint32_t a = particles->id[pair[0]], b = particles->id[pair[1]];
     status = mf_status_fail(STATUS_BAD_INPUT,
-                            "particles %u and %u overlap at the start: they are %.10g apart, their "
-                            "radii %g and %g",
+                            "particles %u and %u overlap at the start: they are %.10g" STATUS_LENGTH
+                            " apart, their "
+                            "radii %g" STATUS_LENGTH " and %g" STATUS_LENGTH,
                             a < b ? a : b, a < b ? b : a, separation(&grid, pair[0], pair[1], r),
                             radius[pair[a < b ? 0 : 1]], radius[pair[a < b ? 1 : 0]]);
 done:

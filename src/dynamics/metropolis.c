@@ -137,11 +137,11 @@ static enum status prepare(struct metropolis *metropolis, const struct box *box,
     CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, cutoff,
                              mf_metropolis_skin(box, (double)count)));
     if (metropolis->neighbours.skin < 0.05 * cutoff) {
-        status =
-            mf_status_fail(STATUS_BAD_INPUT,
-                           "the box is too small for Monte Carlo: its shortest edge %g must be "
-                           "at least 2.1 times the cutoff %g",
-                           mf_box_shortest(box), cutoff);
+        status = mf_status_fail(
+            STATUS_BAD_INPUT,
+            "the box is too small for Monte Carlo: its shortest edge %g" STATUS_LENGTH " must be "
+            "at least 2.1 times the cutoff %g" STATUS_LENGTH,
+            mf_box_shortest(box), cutoff);
         goto done;
     }
     metropolis->step = fmin(metropolis->step, metropolis_longest_step(metropolis));

@@ -248,8 +248,10 @@ static enum status fail_unstable(const struct simulation *simulation, double squ
     const bool has_velocities = simulation_has_velocities(setup);
     const double unit = has_velocities ? 1 : setup->time_step * setup->time_step;
     char what[128];
-    snprintf(what, sizeof what, "%s %.3g (limit %g)",
-             has_velocities ? "kinetic temperature" : "mean squared step along an axis",
+    snprintf(what, sizeof what,
+             has_velocities
+                 ? "kinetic temperature %.3g" STATUS_TEMPERATURE " (limit %g" STATUS_TEMPERATURE ")"
+                 : "mean squared step along an axis %.3g" STATUS_AREA " (limit %g" STATUS_AREA ")",
              mf_visible_number(square * unit), largest_square(setup) * unit);
     return mf_unstable_fail(simulation, what);
 }
@@ -286,7 +288,7 @@ static enum status refresh_list(struct simulation *simulation) {
     TRY(check_flight(simulation));
     const enum status status = mf_neighbours_sort_and_build(&simulation->neighbours, particles);
     // At the start positions are moved by forces alone, whatever the velocities.
-    TRY(status == STATUS_UNSTABLE ? mf_unstable_fail(simulation, mf_status_message()) : status);
+    TRY(status == STATUS_UNSTABLE ? mf_unstable_fail(simulation, mf_status_marked()) : status);
     simulation->list_builds++;
     return STATUS_OK;
 }

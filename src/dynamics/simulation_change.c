@@ -15,10 +15,11 @@ enum status mf_simulation_check_change(const struct simulation *simulation,
     const struct integrator *integrator = setup->integrator;
     const bool heats = change->temperature != setup->temperature;
     if (!is_positive(change->temperature))
-        return mf_status_fail(STATUS_BAD_INPUT, "temperature: %g is not above 0",
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "temperature: %g" STATUS_TEMPERATURE " is not above 0",
                               mf_visible_number(change->temperature));
     if (!is_positive(change->time_step))
-        return mf_status_fail(STATUS_BAD_INPUT, "time_step: %g is not above 0",
+        return mf_status_fail(STATUS_BAD_INPUT, "time_step: %g" STATUS_TIME " is not above 0",
                               mf_visible_number(change->time_step));
     if (integrator->events || integrator->solvent_particles || integrator->samples)
         return mf_status_fail(STATUS_BAD_INPUT,

@@ -99,7 +99,8 @@ static enum status check_acceleration(const struct solvent *solvent) {
         return STATUS_OK;
     if (parameters->acceleration[1] != 0)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "dynamics.acceleration: %g along y would press the solvent against "
+                              "dynamics.acceleration: %g" STATUS_ACCELERATION
+                              " along y would press the solvent against "
                               "the plates",
                               parameters->acceleration[1]);
     if (parameters->wave_acceleration != 0)
@@ -125,23 +126,28 @@ static enum status check_capacity(const struct solvent *solvent) {
     const bool plates = parameters->walls == COLLISION_PLATES;
     if (plates && flight > 2 * box->length[1])
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "dynamics.interval: between two collisions, a time of %g, a particle "
-                              "moves up to %.3g and crosses the channel of width %g twice",
+                              "dynamics.interval: between two collisions, a time of %g" STATUS_TIME
+                              ", a particle "
+                              "moves up to %.3g" STATUS_LENGTH
+                              " and crosses the channel of width %g" STATUS_LENGTH " twice",
                               solvent->time, flight, box->length[1]);
     for (int d = 0; d < box->dimensions && radius > 0; d++) {
         const double centre = parameters->obstacle_centre[d];
         const double margin = plates && d == 1 ? radius : 0;
         if (!(centre >= margin && centre <= box->length[d] - margin))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "dynamics.obstacle_centre[%d]: with %g an obstacle of radius %g "
-                                  "is outside the box of %g",
+                                  "dynamics.obstacle_centre[%d]: with %g" STATUS_LENGTH
+                                  " an obstacle of radius %g" STATUS_LENGTH
+                                  " is outside the box of %g" STATUS_LENGTH,
                                   d, centre, radius, box->length[d]);
         // Farther away, the nearest image of the obstacle may not be the one that is met.
         if (margin == 0 && !(radius + flight < 0.5 * box->length[d]))
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "dynamics.obstacle_radius: %g, and the %.3g that a particle "
-                                  "flies between two collisions, are beyond half the box of %g",
-                                  radius, flight, box->length[d]);
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "dynamics.obstacle_radius: %g" STATUS_LENGTH ", and the %.3g" STATUS_LENGTH
+                " that a particle "
+                "flies between two collisions, are beyond half the box of %g" STATUS_LENGTH,
+                radius, flight, box->length[d]);
     }
     return check_acceleration(solvent);
 }
@@ -153,12 +159,14 @@ static enum status find_cells(struct solvent *solvent) {
         const double cells = solvent->box.length[d] / parameters->cell;
         if (!(fabs(cells - rint(cells)) <= 1e-9 * cells) || cells < 0.5)
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "dynamics.cell: cells of %g do not divide box[%d] = %g",
+                                  "dynamics.cell: cells of %g" STATUS_LENGTH
+                                  " do not divide box[%d] = %g" STATUS_LENGTH,
                                   parameters->cell, d, solvent->box.length[d]);
         total *= rint(cells) + 1;
         if (total > INT32_MAX)
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "dynamics.cell: cells of %g are too many in this box",
+                                  "dynamics.cell: cells of %g" STATUS_LENGTH
+                                  " are too many in this box",
                                   parameters->cell);
         solvent->cells[d] = (int)rint(cells) + (d == 1 && parameters->walls == COLLISION_PLATES);
     }

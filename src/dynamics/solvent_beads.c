@@ -118,10 +118,11 @@ static enum status move_out(const struct solvent *solvent, struct particles *bea
                               "molecules: no room for a molecule of %d beads outside the obstacle "
                               "and between the plates: it is too long, or there are too many",
                               body->beads);
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "particles.separation: no room for particle %u outside the obstacle, %g "
-                          "from the others",
-                          id, min);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "particles.separation: no room for particle %u outside the obstacle, %g" STATUS_LENGTH
+        " from the others",
+        id, min);
 }
 
 /// Move a body that does not fit where it is.

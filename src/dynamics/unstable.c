@@ -42,8 +42,8 @@ static void advise(const struct simulation *simulation, char advice[ADVICE_SIZE]
 enum status mf_unstable_fail(const struct simulation *simulation, const char *what) {
     char advice[ADVICE_SIZE];
     advise(simulation, advice);
-    return mf_status_fail(STATUS_UNSTABLE, "unstable at step %llu: %s, largest force %.3g; %s",
-                          (unsigned long long)simulation->step, what,
-                          mf_visible_number(mf_particles_largest_force(&simulation->particles)),
-                          advice);
+    return mf_status_fail(
+        STATUS_UNSTABLE, "unstable at step %llu: %s, largest force %.3g" STATUS_FORCE "; %s",
+        (unsigned long long)simulation->step, what,
+        mf_visible_number(mf_particles_largest_force(&simulation->particles)), advice);
 }

@@ -109,11 +109,9 @@ static enum status write(const struct export_job *job) {
 }
 
 static void explain(const struct export_job *job, FILE *stream) {
-    fprintf(stream,
-            "A Langevin bath of each particle holds the temperature%s. It keeps g(r), energy and "
-            "pressure; the dynamics\nis not the result's: diffusion and all else that moves "
-            "differs.\n",
-            job->model->setup.omega ? ", and not this omega" : "");
+    fprintf(stream, "A Langevin bath of each particle holds the temperature%s. %s\n",
+            export_model_has_friction(job->model) ? ", and not this omega" : "",
+            mf_export_dynamics_kept(job));
 }
 
 const struct export_engine mf_export_dl_poly = {

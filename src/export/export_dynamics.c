@@ -59,6 +59,8 @@ static enum status measure(struct export_job *job, const struct export_request *
 enum status mf_export_dynamics_find(struct export_job *job, const struct export_request *request) {
     job->here = can_express(job) && job->engine->ask ? job->engine->ask(job) : EXPORT_NOT_ASKED;
     job->runs = choose(job);
+    if (job->runs == EXPORT_BATH && job->model->thermostat)
+        return STATUS_OK; // what moves is no result
     return job->runs == EXPORT_PROJECTED || job->runs == EXPORT_BATH ? measure(job, request)
                                                                      : STATUS_OK;
 }
@@ -66,11 +68,11 @@ enum status mf_export_dynamics_find(struct export_job *job, const struct export_
 // The block ---------------------------------------------------------------------------------------
 
 static void print_friction(const struct export_job *job, const char *prefix, FILE *stream) {
-    const bool lost = job->model->setup.omega || job->model->remembers;
+    const bool lost = export_model_has_friction(job->model);
     fprintf(stream, "%sfriction   ", prefix);
     if (job->runs == EXPORT_TABLES_ALONE)
         fprintf(stream, "none: the tables are of the potential alone%s\n",
-                lost ? "; the friction of the result is lost" : "");
+                lost ? "; the friction of the result is left out" : "");
     else if (job->runs == EXPORT_OWN_FRICTION)
         fprintf(stream, "that of the result: %s, with a misfit of %.2g\n",
                 mf_export_dynamics_friction(job), job->worst_misfit);
@@ -79,11 +81,12 @@ static void print_friction(const struct export_job *job, const char *prefix, FIL
                 mf_export_dynamics_friction(job), job->worst_misfit);
     else
         fprintf(stream, "%s: a Langevin bath of each bead, %s, m/gamma = %.4g %s%s\n",
-                !lost              ? "the result has none"
+                !lost ? job->model->thermostat ? "no result, but chosen to hold the temperature"
+                                               : "the result has none"
                 : can_express(job) ? "by default NOT that of the result (see \"package\")"
                                    : "NOT that of the result",
                 job->engine->bath, mf_export_slowing(job) * job->units.time, job->units.time_name,
-                lost ? "; lost are omega(r), conserved momentum and flow" : "");
+                lost ? "; omega(r), conserved momentum and flow are left out" : "");
 }
 
 static void print_number(FILE *stream, const struct export_number *number, double factor) {
@@ -141,10 +144,19 @@ static void print_measured(const struct export_job *job, const char *prefix, FIL
                 prefix, window, units->time_name, p->rms, p->noise);
 }
 
+const char *mf_export_dynamics_kept(const struct export_job *job) {
+    return export_model_has_friction(job->model)
+               ? "It keeps g(r), energy and pressure; the dynamics\nis not the result's: diffusion "
+                 "and all else that moves differs."
+               : "It keeps g(r), energy and pressure,\nwhich is all that the result knows: of what "
+                 "moves nothing was fitted.";
+}
+
 /// What would carry the friction, if it is not carried.
 static void print_instead(const struct export_job *job, const char *prefix, FILE *stream) {
-    const bool wanted = job->model->setup.omega && job->runs != EXPORT_OWN_FRICTION;
-    if (job->engine->advise && job->model->setup.omega)
+    const bool has = job->model->setup.omega && !job->model->thermostat;
+    const bool wanted = has && job->runs != EXPORT_OWN_FRICTION;
+    if (job->engine->advise && has)
         job->engine->advise(job, prefix, stream);
     if (!wanted || job->projected || can_express(job))
         return;
@@ -175,7 +187,7 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
     else if (job->unmeasured[0])
         fprintf(stream, "%sD          not measured of what runs there: %s\n", prefix,
                 job->unmeasured);
-    if (!job->measured && isfinite(job->model->diffusion.value)) {
+    if (!job->measured && !job->model->thermostat && isfinite(job->model->diffusion.value)) {
         fprintf(stream, "%sD          ", prefix);
         print_number(stream, &job->model->diffusion, diffusion);
         fprintf(stream, " %s^2/%s of the result\n", units->length_name, units->time_name);

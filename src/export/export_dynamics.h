@@ -35,5 +35,8 @@ void mf_export_dynamics_tell(const struct export_job *job, struct progress *prog
 void mf_export_dynamics_explain(const struct export_job *job, FILE *stream);
 void mf_export_dynamics_escapes(const struct export_job *job, FILE *stream);
 
+/// What a bath keeps of the result, two lines of the README.
+const char *mf_export_dynamics_kept(const struct export_job *job);
+
 /// The engine's own name of its friction between pairs.
 const char *mf_export_dynamics_friction(const struct export_job *job);

@@ -180,7 +180,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     fprintf(
         stream, "%s, for %s\n\nWritten by mesofit " MESOFIT_VERSION " from %s. Run it here:\n\n",
         model->title[0] ? model->title : "A result of mesofit", job->engine->title, model->folder);
-    fprintf(stream, "%s\n", job->engine->commands);
+    fprintf(stream, "%s\n",
+            job->engine->commands_of ? job->engine->commands_of(job) : job->engine->commands);
     mf_export_dynamics_print(job, "", stream);
     fprintf(stream, "\n");
     fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g %s.\n\n",

@@ -62,6 +62,8 @@ struct export_engine {
     /// Lines of the block: how the friction can be had. NULL: none.
     void (*advise)(const struct export_job *job, const char *prefix, FILE *stream);
     const char *commands; ///< that run the folder, a line each
+    /// Those of a job, or NULL: `commands`.
+    const char *(*commands_of)(const struct export_job *job);
     const char *verified; ///< whether such folders were run: a sentence of the README
     int max_types;        ///< that it is written for
     bool one_cutoff;      ///< all its tables end at the same distance

@@ -316,18 +316,21 @@ static enum status write(const struct export_job *job) {
     return mf_export_file(job, "grompp.mdp", print_settings);
 }
 
+/// A table of a bond, angle or dihedral is called by a letter and a number.
+static const char *commands_of(const struct export_job *job) {
+    if (job->model->molecules == NULL)
+        return "    gmx grompp\n    gmx mdrun\n";
+    return job->bonded.tables
+               ? "    gmx grompp -n index.ndx\n    gmx mdrun -tableb table_[abd][0-9]*.xvg\n"
+               : "    gmx grompp -n index.ndx\n    gmx mdrun\n";
+}
+
 static void explain(const struct export_job *job, FILE *stream) {
     fprintf(stream,
-            "GROMACS reads tables up to version 2019. It has no DPD%s: its integrator sd, "
-            "a bath of each particle,\nkeeps g(r), energy and pressure; the dynamics is "
-            "not the result's: diffusion and all else that moves differs.\n",
-            job->model->setup.omega ? " and so no omega" : "");
-    if (job->model->molecules)
-        fprintf(stream,
-                "With molecules, in place of the commands above: gmx grompp -n index.ndx%s.\n",
-                job->bonded.tables ? ", and gmx mdrun -tableb with all of table_b*.xvg, "
-                                     "table_a*.xvg and\ntable_d*.xvg"
-                                   : "");
+            "GROMACS reads tables up to version 2019. It has no DPD%s: its integrator sd "
+            "is a bath of each particle.\n%s\n",
+            export_model_has_friction(job->model) ? " and so no omega" : "",
+            mf_export_dynamics_kept(job));
 }
 
 const struct export_engine mf_export_gromacs = {
@@ -339,7 +342,7 @@ const struct export_engine mf_export_gromacs = {
     .physical = true,
     .interpolation = &mf_export_grid_hermite,
     .bath = "integrator sd",
-    .commands = "    gmx grompp\n    gmx mdrun\n",
+    .commands_of = commands_of,
     .verified = "Such folders were checked against the manual of GROMACS, and not run.",
     .max_types = COMPOSITION_MAX_TYPES,
     .one_cutoff = true,

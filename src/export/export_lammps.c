@@ -358,11 +358,8 @@ static void explain(const struct export_job *job, FILE *stream) {
             "in.mesofit leaves LAMMPS's own g(r) in rdf.dat (bins of the result; of mixtures a "
             "column g and a\ncoordination number for each pair type), temperature, pressure and "
             "energy in thermo.dat.\n\n");
-    fprintf(stream,
-            "-var friction langevin%s runs in every LAMMPS: a bath for each particle. It keeps "
-            "g(r), energy\nand pressure; the dynamics is not the result's: diffusion and all else "
-            "that moves differs.\n",
-            dpd_runs(job) ? "" : ", the default,");
+    fprintf(stream, "-var friction langevin%s runs in every LAMMPS: a bath for each particle. %s\n",
+            dpd_runs(job) ? "" : ", the default,", mf_export_dynamics_kept(job));
     if (mf_export_is_power(job))
         fprintf(stream,
                 "-var friction dpd%s: %s by pair_style hybrid/overlay, the power law above. LAMMPS "

@@ -166,6 +166,8 @@ static enum status read_summary(struct reading *reading) {
         snprintf(model->warning, sizeof model->warning,
                  "%.160s: the fit is %.40s; what is exported is its best so far", model->folder,
                  status);
+    const char *friction = mf_json_choice(&root, "friction", NULL, "");
+    model->thermostat = friction && strcmp(friction, "chosen") == 0;
     mf_json_fields(&root, summary_fields, model);
     if (mf_json_is_object(&root, "motion")) {
         struct json_object motion = mf_json_child(&root, "motion", true);

@@ -28,7 +28,8 @@ struct export_model {
     struct table omega;                    ///< of a fitted friction weight
     const struct molecules *molecules;     ///< of the scene, or NULL
     bool remembers;                        ///< friction has memory, or acts across pairs: left out
-    int types;                             ///< at least 1
+    bool thermostat; ///< omega was chosen to hold the temperature, and is no result
+    int types;       ///< at least 1
     char name[COMPOSITION_MAX_TYPES][COMPOSITION_NAME_SIZE];
     double mass[COMPOSITION_MAX_TYPES]; ///< [μ]
     size_t count;
@@ -52,6 +53,11 @@ struct export_model {
 /// differ within a type; NO_MEMORY. Tested: test_export_model.
 enum status mf_export_model_read(struct export_model *model, const char *folder) MUST_USE;
 void mf_export_model_clear(struct export_model *model);
+
+/// Whether friction is a part of the result: fitted, or the scene's own.
+static inline bool export_model_has_friction(const struct export_model *model) {
+    return (model->setup.omega && !model->thermostat) || model->remembers;
+}
 
 /// Pair types, at least 1, and Φ or ω of one of them.
 int mf_export_model_pairs(const struct export_model *model);

@@ -116,9 +116,8 @@ void mf_export_script_explain(const struct export_job *job, const char *dpd, FIL
     else if (job->model->setup.omega)
         fprintf(stream,
                 "%s cannot express this omega: a Langevin bath of each particle holds the "
-                "temperature instead. It keeps g(r), energy\nand pressure; the dynamics is not "
-                "the result's: diffusion and all else that moves differs.\n",
-                job->engine->title);
+                "temperature instead. %s\n",
+                job->engine->title, mf_export_dynamics_kept(job));
     else
         fprintf(stream, "A Langevin bath of each particle holds the temperature.\n");
 }

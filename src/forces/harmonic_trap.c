@@ -17,8 +17,9 @@ static enum status begin(const void *parameters, void *state, const struct parti
     for (int d = 0; d < particles->box.dimensions; d++)
         if (!(fabs(own->centre[d]) <= max_boxes * particles->box.length[d]))
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "interactions.harmonic-trap.centre[%d]: %g is more than %g boxes "
-                                  "of %g away",
+                                  "interactions.harmonic-trap.centre[%d]: %g" STATUS_LENGTH
+                                  " is more than %g boxes "
+                                  "of %g" STATUS_LENGTH " away",
                                   d, own->centre[d], max_boxes, particles->box.length[d]);
     return STATUS_OK;
 }

@@ -62,12 +62,12 @@ static enum status check_lengths(const struct molecules *molecules, int order,
         const double longest = mf_bonded_longest(&group->curve);
         const double length = isfinite(longest) ? longest : mf_bonded_rest(&group->curve);
         if (!(length < 0.5 * mf_box_shortest(box)))
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s.%s: %s %s of %g is not shorter than half of the box, "
-                                  "whose shortest edge is %g",
-                                  mf_bonded_kinds[order]->plural, group->name,
-                                  mf_bonded_kinds[order]->article, mf_bonded_kinds[order]->name,
-                                  length, mf_box_shortest(box));
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s.%s: %s %s of %g" STATUS_LENGTH " is not shorter than half of the box, "
+                "whose shortest edge is %g" STATUS_LENGTH,
+                mf_bonded_kinds[order]->plural, group->name, mf_bonded_kinds[order]->article,
+                mf_bonded_kinds[order]->name, length, mf_box_shortest(box));
     }
     return STATUS_OK;
 }
@@ -172,13 +172,13 @@ static enum status check_broken(const struct sweep *sweep) {
         const struct molecules_group *group =
             &state->molecules->group[sums->broken_order][sums->broken];
         if (sums->longest > 0)
-            return mf_status_fail(STATUS_UNSTABLE,
-                                  "unstable at step %llu: %s %s \"%s\" is %.4g long, and breaks at "
-                                  "%.4g; lower \"time_step\", or begin with shorter bonds",
-                                  (unsigned long long)sweep->pass->step,
-                                  mf_bonded_kinds[sums->broken_order]->article,
-                                  mf_bonded_kinds[sums->broken_order]->name, group->name,
-                                  sums->longest, mf_bonded_longest(&group->curve));
+            return mf_status_fail(
+                STATUS_UNSTABLE,
+                "unstable at step %llu: %s %s \"%s\" is %.4g" STATUS_LENGTH " long, and breaks at "
+                "%.4g" STATUS_LENGTH "; lower \"time_step\", or begin with shorter bonds",
+                (unsigned long long)sweep->pass->step, mf_bonded_kinds[sums->broken_order]->article,
+                mf_bonded_kinds[sums->broken_order]->name, group->name, sums->longest,
+                mf_bonded_longest(&group->curve));
     }
     return STATUS_OK;
 }

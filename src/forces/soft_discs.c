@@ -31,10 +31,11 @@ static enum status begin(const void *parameters, void *state, const struct parti
     CHECK(mf_soft_discs_cells_init(&own->cells, particles, particles->precise_place != NULL));
     const double reach = 2 * own->cells.of[own->cells.classes - 1].largest;
     if (mf_box_shortest(&particles->box) < 2 * reach)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "interactions.soft-discs: the shortest edge %g of the box is below "
-                              "four times the largest radius %g: two discs would interact twice",
-                              mf_box_shortest(&particles->box), 0.5 * reach);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "interactions.soft-discs: the shortest edge %g" STATUS_LENGTH " of the box is below "
+            "four times the largest radius %g" STATUS_LENGTH ": two discs would interact twice",
+            mf_box_shortest(&particles->box), 0.5 * reach);
     NEW_ARRAY(own->energy, particles->count);
     NEW_ARRAY(own->virial, particles->count);
 done:

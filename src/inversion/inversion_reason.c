@@ -52,12 +52,15 @@ static void report_what_is_missing(const struct inversion *inversion,
     else if (targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
              pressure->rms > mf_inverse_noise_margin * pressure->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
-                 "g(r) agrees, but the pressure is off by %.3g (statistical error %.2g)",
+                 "g(r) agrees, but the pressure is off by %.3g" STATUS_PRESSURE
+                 " (statistical error %.2g" STATUS_PRESSURE ")",
                  pressure->rms, pressure->noise);
     else if (integrals->rms > mf_inverse_noise_margin * integrals->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
-                 "g(r) agrees, but an integral of target.kirkwood_buff is off by %.3g (statistical "
-                 "error %.2g): try more \"iterations\" or \"samples\", or a longer cutoff of the "
+                 "g(r) agrees, but an integral of target.kirkwood_buff is off by %.3g" STATUS_VOLUME
+                 " (statistical "
+                 "error %.2g" STATUS_VOLUME
+                 "): try more \"iterations\" or \"samples\", or a longer cutoff of the "
                  "potential",
                  integrals->rms, integrals->noise);
     else if (inversion_grid(inversion)->groups > 0 && inversion_grid(inversion)->pairs == 0)
@@ -71,8 +74,10 @@ static void report_what_is_missing(const struct inversion *inversion,
     else if (p->best.precise)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g(r) agrees, but what it hardly determines has not converged: a ramp "
-                 "A (1 - r/cutoff) of the potential still drifts by %.2g k_B T_0 (error %.2g), and "
-                 "the pressure by %.2g (error %.2g); give \"pressure\" as a second target, or more "
+                 "A (1 - r/cutoff) of the potential still drifts by %.2g" STATUS_ENERGY
+                 " (error %.2g" STATUS_ENERGY "), and "
+                 "the pressure by %.2g" STATUS_PRESSURE " (error %.2g" STATUS_PRESSURE
+                 "); give \"pressure\" as a second target, or more "
                  "\"iterations\"",
                  ramp->drift, ramp->open, farthest.drift, farthest.open);
     else

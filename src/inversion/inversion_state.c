@@ -63,7 +63,8 @@ static enum status refuse_holes(const struct inversion_state *state) {
         mf_composition_pair_name(&problem->scene.composition, (int)(bin / grid->bins), kind);
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "%s%sthe target is empty at r = %g, where the bin before it has g = %.3g: no pair "
+            "%s%sthe target is empty at r = %g" STATUS_LENGTH
+            ", where the bin before it has g = %.3g: no pair "
             "potential gives such a gap; correct the target there, or end it before by \"cutoff\"",
             kind, kind[0] ? ": " : "", r, problem->targets.target[TARGET_RDF].value[bin]);
     }

@@ -349,8 +349,7 @@ bool mf_data_table_numbers_rows(const struct data_table *table, size_t column) {
     return numbers;
 }
 
-bool mf_data_table_is_spaced(const struct data_table *table, size_t column) {
-    static const double rounding = 0.2;
+bool mf_data_table_is_spaced(const struct data_table *table, size_t column, double rounding) {
     const double step = table->rows > 1 ? cell(table, 1, column) - cell(table, 0, column) : 0;
     bool spaced = step > 0;
     for (size_t k = 1; k < table->rows && spaced; k++)
@@ -368,7 +367,8 @@ static bool increases(const struct data_table *table, size_t column) {
 bool mf_data_table_is_numbered(const struct data_table *table) {
     enum { FEWEST_COLUMNS = 3 };
     return table->columns >= FEWEST_COLUMNS && mf_data_table_numbers_rows(table, 0) &&
-           (cell(table, 0, 0) == 1 ? increases(table, 1) : mf_data_table_is_spaced(table, 1));
+           (cell(table, 0, 0) == 1 ? increases(table, 1)
+                                   : mf_data_table_is_spaced(table, 1, DATA_ROUNDING));
 }
 
 size_t mf_data_table_find(const struct data_table *table, const char *name) {

@@ -54,8 +54,11 @@ enum status mf_data_table_check_increasing(const struct data_table *table, const
 /// Whether a column numbers at least three rows: 1, 2, 3, … from any number on.
 bool mf_data_table_numbers_rows(const struct data_table *table, size_t column);
 
-/// Whether a column grows in equal steps but for its digits, as r and times do.
-bool mf_data_table_is_spaced(const struct data_table *table, size_t column);
+/// Whether a column grows in equal steps but for `rounding`, a share of them, as r and times do:
+/// DATA_ROUNDING of any digits, and no measured function within DATA_EXACT.
+#define DATA_ROUNDING 0.2
+#define DATA_EXACT 1e-3
+bool mf_data_table_is_spaced(const struct data_table *table, size_t column, double rounding);
 
 /// Whether the first of at least three columns numbers the rows and the second is an argument as r:
 /// what a table of another program is if nobody has said so. Behind 1, 2, 3, … it only increases.

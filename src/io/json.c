@@ -34,6 +34,7 @@ void mf_json_fault(struct json_object *object, const char *key, const char *form
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
+    mf_units_convert_text(&object->document->units, message, sizeof message);
     snprintf(line, sizeof line, "%.1024s: %s%s%s", object->document->file, path,
              path[0] ? ": " : "", message);
     mf_visible_copy(visible, sizeof visible, line, ""); // one line a fault, whatever it quotes

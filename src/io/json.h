@@ -109,6 +109,11 @@ int mf_json_numbers(const struct json_object *object, const char *key, double *v
 /// is not known, is allowed for numbers whose default is NAN.
 void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
 
+/// Of a law: lengths and times that `object` leaves to their defaults are faults where the program
+/// chooses the unit of length (units.chosen), which follows the density, so that the law would,
+/// too. Tested: test_units_files.
+void mf_json_fields_need_scale(struct json_object *object, const struct field *fields);
+
 /// Read a required text such as the name of a law: NULL (and a fault) if absent or not a text.
 /// `known` lists the allowed values, NULL-terminated, or is NULL; others are a fault that names
 /// the nearest. With `fallback` not NULL the key is optional. The text lives with the document.

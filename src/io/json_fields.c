@@ -149,7 +149,7 @@ static void read_text_field(struct json_object *object, const struct field *fiel
     strcpy(member + folder, text);
     if (field->type == FIELD_FILE && object->document->inputs &&
         mf_input_files_add(object->document->inputs, member) != STATUS_OK)
-        mf_json_fault(object, field->name, "%s", mf_status_message());
+        mf_json_fault(object, field->name, "%s", mf_status_marked());
 }
 
 static void read_field(struct json_object *object, const struct field *field, const cJSON *item,
@@ -204,6 +204,22 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
         else if (field->required && object->item)
             mf_json_fault(object, field->name, "missing: expected %s (%s)",
                           expected_name[field->type], field->help ? field->help : field->name);
+    }
+}
+
+void mf_json_fields_need_scale(struct json_object *object, const struct field *fields) {
+    char name[UNITS_NAME_SIZE];
+    if (!object->document->units.chosen)
+        return;
+    for (const struct field *field = fields; field->name; field++) {
+        const bool scaled = field->type == FIELD_NUMBER && field->initial != 0 &&
+                            (strstr(field->unit, "lambda") || strstr(field->unit, "tau"));
+        if (scaled && !field->required && !mf_json_has(object, field->name))
+            mf_json_fault(object, field->name,
+                          "missing: expected a number in %s (%s); the default, %g %s, would change "
+                          "with the density",
+                          mf_units_name(&object->document->units, field->unit, name), field->help,
+                          field->initial, field->unit);
     }
 }
 

@@ -235,7 +235,8 @@ static enum status append(struct manifest *list, const char *text, size_t length
     TRY(open_to_append(list));
     if (!write_whole(list->file, text, length))
         return fail_to_write(list);
-    fdatasync(list->file);
+    if (!list->later)
+        fdatasync(list->file);
     return STATUS_OK;
 }
 

@@ -34,6 +34,7 @@ struct manifest {
     size_t *number; ///< by the digest of a name, shape [2 room]: that of its entry from 1 on, or 0
     uint64_t began; ///< digest of the last run that began
     bool there;     ///< the file
+    bool later;     ///< its lines come to the disk with what else is to come there later (output.h)
 };
 
 /// Read the list, of which place, folder and name are set; a folder without one has an empty one.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define _GNU_SOURCE // fopencookie
+#define _GNU_SOURCE // fopencookie, syncfs
 
 #include "io/output.h"
 
@@ -88,12 +88,12 @@ static void make_temporary(struct output *output) {
 /// The whole folder may have gone.
 static enum status fail(const struct output *output, int error) {
     if (error == ENOENT)
-        TRY(mf_tracked_files_claim(output->path));
+        TRY(mf_tracked_files_claim(output->path, false));
     return mf_status_fail(STATUS_IO, "cannot write %s: %s", output->path, strerror(error));
 }
 
-enum status mf_output_open(struct output *output, const char *path) {
-    *output = (struct output){.file = -1};
+static enum status open_output(struct output *output, const char *path, bool later) {
+    *output = (struct output){.file = -1, .later = later};
     const int length = snprintf(output->path, sizeof output->path, "%s", path);
     if (length < 0 || (size_t)length >= sizeof output->path)
         return mf_status_fail(STATUS_IO, "%.60s…: the path is longer than %d bytes", path,
@@ -103,7 +103,7 @@ enum status mf_output_open(struct output *output, const char *path) {
         return output->stream ? STATUS_OK
                               : mf_status_fail(STATUS_IO, "/dev/null: %s", strerror(errno));
     }
-    TRY(mf_tracked_files_claim(output->path));
+    TRY(mf_tracked_files_claim(output->path, later));
     make_temporary(output);
     if (output->file >= 0)
         output->stream = fopencookie(
@@ -119,6 +119,28 @@ enum status mf_output_open(struct output *output, const char *path) {
     return fail(output, error);
 }
 
+enum status mf_output_open(struct output *output, const char *path) {
+    return open_output(output, path, false);
+}
+
+enum status mf_output_open_later(struct output *output, const char *path) {
+    return open_output(output, path, true);
+}
+
+/// Whether files of this thread are not on the disk that are to come to it with the next one.
+static _Thread_local bool some_wait;
+
+void mf_output_leave_for_later(void) {
+    some_wait = true;
+}
+
+/// Bring a file to the disk, and what waits for it; 0 or the error number.
+static int sync_file(int file) {
+    const int result = some_wait ? syncfs(file) : fsync(file);
+    some_wait = some_wait && result != 0;
+    return result == 0 || errno == EINVAL || errno == ENOSYS ? 0 : errno;
+}
+
 /// Close the stream, its bytes on the disk; 0 or the error number of the first write that failed.
 static int search_stream(struct output *output) {
     const bool flushed = fflush(output->stream) == 0;
@@ -128,8 +150,10 @@ static int search_stream(struct output *output) {
         error = EIO;
     if (output->error)
         error = output->error;
-    if (error == 0 && fsync(output->file) != 0 && errno != EINVAL && errno != ENOSYS)
-        error = errno;
+    if (error == 0 && output->later)
+        mf_output_leave_for_later();
+    else if (error == 0)
+        error = sync_file(output->file);
     if (fclose(output->stream) != 0 && error == 0)
         error = errno;
     output->stream = NULL;
@@ -172,7 +196,8 @@ enum status mf_output_publish(struct output *output) {
         remove(output->temporary);
         return fail(output, error);
     }
-    sync_folder(output->path);
+    if (!output->later)
+        sync_folder(output->path);
     return STATUS_OK;
 }
 

@@ -21,6 +21,7 @@ struct output {
     FILE *stream;
     int file;      ///< that the stream writes to
     int error;     ///< number of the first write that failed, or 0
+    bool later;    ///< its bytes come to the disk with those of a file after it
     bool finished; ///< and not published
     char path[OUTPUT_PATH_SIZE];
     char temporary[OUTPUT_PATH_SIZE + OUTPUT_PARTIAL_SIZE];
@@ -30,10 +31,17 @@ struct output {
 /// Fails: IO; as mf_tracked_files_claim, before anything is written.
 enum status mf_output_open(struct output *output, const char *path) MUST_USE;
 
+/// The same of a file that comes to the disk with the next one that this thread commits and that is
+/// not so itself: of many snapshots with the checkpoint that counts them.
+enum status mf_output_open_later(struct output *output, const char *path) MUST_USE;
+
 /// Flush, check every write, bring the bytes to the disk and rename to the final path, so that
 /// after a power cut the file is whole, or the old one is; on any error (disk full, …) the
 /// temporary file is removed and the status is STATUS_IO. Tested: test_output.
 enum status mf_output_commit(struct output *output) MUST_USE;
+
+/// What this thread has written elsewhere comes to the disk in the same way.
+void mf_output_leave_for_later(void);
 
 /// The same in two steps: all bytes are on the disk, and the file gets its name.
 enum status mf_output_finish(struct output *output) MUST_USE;

@@ -374,11 +374,16 @@ static enum status claim(struct tracked_files *own, const char *name) {
     return mf_manifest_enter(&own->list, &entry, 1);
 }
 
-enum status mf_tracked_files_claim(const char *path) {
+enum status mf_tracked_files_claim(const char *path, bool later) {
     const char *name;
+    enum status status = STATUS_OK;
     mf_process_lock();
     struct tracked_files *own = find(path, &name);
-    const enum status status = own ? claim(own, name) : STATUS_OK;
+    if (own) {
+        own->list.later = later;
+        status = claim(own, name);
+        own->list.later = false;
+    }
     mf_process_unlock();
     return status;
 }

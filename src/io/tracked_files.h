@@ -80,7 +80,8 @@ void mf_tracked_files_remove_all(struct tracked_files *own);
 /// @name By their paths, whatever folder they are in; where none is open, anything goes.
 /// Before a file is written: enter it into the list. Fails: BAD_INPUT if a file is there that is
 /// not its own, was changed since or is read, or if a link leads there; IO; NO_MEMORY.
-enum status mf_tracked_files_claim(const char *path) MUST_USE;
+/// @param[in] later  the file comes to the disk later (mf_output_open_later), as does its entry
+enum status mf_tracked_files_claim(const char *path, bool later) MUST_USE;
 
 /// Remove a file that is not wanted any more, if it is its own.
 void mf_tracked_files_remove(const char *path);

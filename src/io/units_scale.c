@@ -235,13 +235,61 @@ enum status mf_units_from(const struct units *units, const char *from, const cha
     return STATUS_OK;
 }
 
-enum status mf_units_add_to_message(const struct units *units, enum status status) {
-    char message[1024], line[UNITS_LINE_SIZE];
-    if (status == STATUS_OK || !mf_units_are_physical(units))
+/// The number that a text ends with: where it begins, NULL if there is none, and its digits.
+static char *find_number(char *text, double *number, int *digits) {
+    const size_t length = strlen(text);
+    size_t begin = length;
+    while (begin > 0 && strchr("0123456789.e+-naif", text[begin - 1]))
+        begin--;
+    char *end;
+    *number = strtod(text + begin, &end);
+    *digits = 0;
+    for (const char *at = text + begin; *at && *at != 'e'; at++)
+        *digits += *at >= '0' && *at <= '9';
+    return begin < length && *end == '\0' ? text + begin : NULL;
+}
+
+/// Replace the number at the end of a text by that in the file's unit, in one digit less, as the
+/// last one has been rounded.
+static void convert_last(const struct units *units, const char *unit, char *text, size_t size) {
+    enum { FEWEST_DIGITS = 3 };
+    char name[UNITS_NAME_SIZE];
+    double number;
+    int digits;
+    char *const begin = find_number(text, &number, &digits);
+    if (begin)
+        snprintf(begin, size - (size_t)(begin - text), "%.*g%s",
+                 digits > FEWEST_DIGITS ? digits - 1 : FEWEST_DIGITS,
+                 mf_units_factor(units, unit) * number, mf_units_suffix(units, unit, name));
+}
+
+void mf_units_convert_text(const struct units *units, char *text, size_t size) {
+    char converted[STATUS_MESSAGE_SIZE] = "", unit[UNITS_NAME_SIZE];
+    const char mark[] = {STATUS_MARK, '\0'};
+    if (!mf_units_are_physical(units)) {
+        mf_status_strip(text);
+        return;
+    }
+    for (const char *at = text; *at;) {
+        const size_t plain = strcspn(at, mark), used = strlen(converted);
+        snprintf(converted + used, sizeof converted - used, "%.*s", (int)plain, at);
+        at += plain + (at[plain] != '\0');
+        const size_t length = strcspn(at, mark);
+        snprintf(unit, sizeof unit, "%.*s", (int)length, at);
+        if (at[length] != '\0')
+            convert_last(units, unit, converted, sizeof converted);
+        at += length + (at[length] != '\0');
+    }
+    snprintf(text, size, "%s", converted);
+}
+
+enum status mf_units_convert_message(const struct units *units, enum status status) {
+    char message[STATUS_MESSAGE_SIZE];
+    if (status == STATUS_OK)
         return status;
-    mf_units_print(units, line);
-    snprintf(message, sizeof message, "%s", mf_status_message());
-    return mf_status_fail(status, "%s (numbers in units of %s)", message, strchr(line, ' ') + 1);
+    snprintf(message, sizeof message, "%s", mf_status_marked());
+    mf_units_convert_text(units, message, sizeof message);
+    return mf_status_fail(status, "%s", message);
 }
 
 void mf_units_print(const struct units *units, char line[UNITS_LINE_SIZE]) {

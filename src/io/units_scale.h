@@ -71,9 +71,12 @@ const char *mf_units_suffix(const struct units *units, const char *unit, char *n
 const char *mf_units_measured(const struct units *units, const char *unit, double value,
                               double error, char text[UNITS_MEASURED_SIZE]);
 
-/// The engine's messages are in reduced units: add the scale to the message of the calling thread
-/// if the file does not, and return `status` unchanged.
-enum status mf_units_add_to_message(const struct units *units, enum status status);
+/// Numbers of a text that have the mark of a reduced unit (STATUS_IN) in those of the file, with
+/// their names; in a reduced file without the marks. Tested: test_units.
+void mf_units_convert_text(const struct units *units, char *text, size_t size);
+
+/// The same of the message of the calling thread. Returns `status` unchanged.
+enum status mf_units_convert_message(const struct units *units, enum status status);
 
 /// The number that a file says for `reduced`: factor · reduced, or, where rounding allows it, the
 /// number nearest to that which reads back to the same bits, 15 digits or fewer if they do.

@@ -297,6 +297,7 @@ enum mesofit_status mesofit_fit_iterate(struct mesofit_fit *fit, struct mesofit_
     mf_guard_enter();
     if (!fit->step.finished)
         status = fit->file.method->iterate(fit->state, &fit->step, &listener);
+    mf_units_convert_text(&fit->file.scene.units, fit->step.reason, sizeof fit->step.reason);
     fit->iterated = fit->iterated || status == STATUS_OK;
     if (status == STATUS_OK && state)
         describe(fit, state);

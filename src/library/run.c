@@ -245,7 +245,7 @@ static enum status carry_out(struct mesofit_run *run, size_t count, const char *
                                     .change = change,
                                     .damp = damp};
     const struct command *command = NULL;
-    struct command_line line = {0};
+    CLEARED_BY(mf_command_line_clear) struct command_line line = {0};
     TRY(mf_command_find(commands, words[0], &command));
     TRY(mf_command_parse(command, count - 1, words + 1, &line));
     line.options.quiet = RUN_SAYS_NOTHING;

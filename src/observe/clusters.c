@@ -87,7 +87,8 @@ static enum status begin(void *state, const void *settings,
     const double range = mf_simulation_range(&simulation->setup);
     if (s->distance > range * (1 + 1e-9))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "clusters.distance: %g is beyond %g, the range of the interactions, "
+                              "clusters.distance: %g" STATUS_LENGTH " is beyond %g" STATUS_LENGTH
+                              ", the range of the interactions, "
                               "for which pairs are known",
                               s->distance, range);
     if (simulation->particles.topology && simulation->particles.topology->excludes)

@@ -120,7 +120,8 @@ static enum status reserve_for_phases(struct density_waves *waves) {
 
 static enum status fail_of_many(const struct density_waves *waves, double all) {
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "q_maximum %g has about %.2g wave vectors of the box; at most %d are "
+                          "q_maximum %g" STATUS_WAVE_NUMBER
+                          " has about %.2g wave vectors of the box; at most %d are "
                           "measured",
                           waves->plan.q_maximum, all, DENSITY_WAVES_MAX);
 }
@@ -133,7 +134,8 @@ static enum status reserve(struct density_waves *waves, const size_t *members) {
         all += max > 0 && members[bin] > max ? max : members[bin];
     if (all == 0)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "q_maximum %g is below that of the longest wave in the box",
+                              "q_maximum %g" STATUS_WAVE_NUMBER
+                              " is below that of the longest wave in the box",
                               waves->plan.q_maximum);
     if (all > DENSITY_WAVES_MAX)
         return fail_of_many(waves, (double)all);
@@ -147,7 +149,8 @@ static enum status check_edges(const struct density_waves *waves, const double l
         const double along = waves->plan.q_maximum * length[i] / (2 * pi);
         if (along > DENSITY_WAVES_LONGEST)
             return mf_status_fail(STATUS_BAD_INPUT,
-                                  "q_maximum %g has %.3g wave lengths along edge %d of the box; at "
+                                  "q_maximum %g" STATUS_WAVE_NUMBER
+                                  " has %.3g wave lengths along edge %d of the box; at "
                                   "most %d are measured",
                                   waves->plan.q_maximum, along, i + 1, DENSITY_WAVES_LONGEST);
     }

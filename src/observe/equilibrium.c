@@ -30,30 +30,35 @@ static void average(const double *series, size_t each, double *block, size_t blo
         block[b] = mean_of(series + b * each, each);
 }
 
-static enum status assess_drift(const char *name, const double *block, size_t blocks) {
+static enum status assess_drift(const char *name, const char *unit, const double *block,
+                                size_t blocks) {
     const struct equilibration_drift drift = mf_equilibration_drift(block, blocks);
     if (!equilibration_drifts(&drift, 1))
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_UNCONVERGED,
-        "the %s is %.6g +- %.1g in the first %.0f %% of the samples and %.6g +- %.1g in the rest: "
-        "the run was not in equilibrium; equilibrate for longer",
-        name, drift.before, drift.before_error, 100 * drift.part, drift.after, drift.after_error);
+    return mf_status_fail(STATUS_UNCONVERGED,
+                          "the %s is %.6g" STATUS_UNIT " +- %.1g" STATUS_UNIT
+                          " in the first %.0f %% of the samples and %.6g" STATUS_UNIT
+                          " +- %.1g" STATUS_UNIT " in the rest: "
+                          "the run was not in equilibrium; equilibrate for longer",
+                          name, drift.before, unit, drift.before_error, unit, 100 * drift.part,
+                          drift.after, unit, drift.after_error, unit);
 }
 
-static enum status assess_correlation(const char *name, const double *block, size_t blocks,
-                                      size_t samples) {
+static enum status assess_correlation(const char *name, const char *unit, const double *block,
+                                      size_t blocks, size_t samples) {
     const double independent = (double)blocks / mf_statistics_inefficiency(block, blocks, 1, 1);
     if (independent >= enough)
         return STATUS_OK;
     return mf_status_fail(
         STATUS_UNCONVERGED,
-        "the %zu samples of the %s, %.6g, are so correlated that only %.0f are independent: its "
+        "the %zu samples of the %s, %.6g" STATUS_UNIT
+        ", are so correlated that only %.0f are independent: its "
         "error is not well known, and the run may not be in equilibrium; run for longer",
-        samples, name, mean_of(block, blocks), fmax(1, independent));
+        samples, name, mean_of(block, blocks), unit, fmax(1, independent));
 }
 
-enum status mf_equilibrium_check(const char *name, const double *series, size_t samples) {
+enum status mf_equilibrium_check(const char *name, const char *unit, const double *series,
+                                 size_t samples) {
     struct running_mean all = {0};
     OWNED double *block = NULL;
     for (size_t k = 0; k < samples; k++)
@@ -63,8 +68,8 @@ enum status mf_equilibrium_check(const char *name, const double *series, size_t 
     const size_t each = (samples + MAX_BLOCKS - 1) / MAX_BLOCKS, blocks = samples / each;
     TRY_ARRAY(block, blocks);
     average(series, each, block, blocks);
-    TRY(assess_drift(name, block, blocks));
+    TRY(assess_drift(name, unit, block, blocks));
     if (samples >= min_of_all)
-        TRY(assess_correlation(name, block, blocks, samples));
+        TRY(assess_correlation(name, unit, block, blocks, samples));
     return STATUS_OK;
 }

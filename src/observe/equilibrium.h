@@ -21,5 +21,7 @@
 /// Fails: UNCONVERGED with both parts, or the number of independent samples, in the message,
 /// NO_MEMORY. Tested: test_equilibrium.
 /// @param[in] name  "potential energy", for the message
+/// @param[in] unit  of it, reduced
 /// @param[in] series  shape [samples]
-enum status mf_equilibrium_check(const char *name, const double *series, size_t samples) MUST_USE;
+enum status mf_equilibrium_check(const char *name, const char *unit, const double *series,
+                                 size_t samples) MUST_USE;

@@ -33,12 +33,15 @@ enum { BATCH = 512 };
 
 static enum status check(const struct etd_grid *grid, const struct box *box) {
     if (!(grid->r_maximum > grid->r_minimum))
-        return mf_status_fail(STATUS_BAD_INPUT, "etd: r_maximum %g is not above r_minimum %g",
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "etd: r_maximum %g" STATUS_LENGTH
+                              " is not above r_minimum %g" STATUS_LENGTH,
                               grid->r_maximum, grid->r_minimum);
     if (mf_box_shortest(box) < 2 * grid->r_maximum)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "etd: the box is too small: its shortest edge %g is below twice "
-                              "r_maximum, %g",
+                              "etd: the box is too small: its shortest edge %g" STATUS_LENGTH
+                              " is below twice "
+                              "r_maximum, %g" STATUS_LENGTH,
                               mf_box_shortest(box), grid->r_maximum);
     return STATUS_OK;
 }

@@ -90,7 +90,8 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     return mf_etd_pairs(etd) > 0
                ? STATUS_OK
                : mf_status_fail(STATUS_UNCONVERGED,
-                                "there are no escape times: no pair was between %.4g and %.4g at "
+                                "there are no escape times: no pair was between %.4g" STATUS_LENGTH
+                                " and %.4g" STATUS_LENGTH " at "
                                 "an origin",
                                 etd->grid.r_minimum, etd->grid.r_maximum);
 }

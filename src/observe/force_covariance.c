@@ -26,7 +26,8 @@ static enum status check(const struct simulation *simulation, double range) {
     // A part in 10⁹ forgives a range that was rounded in another unit.
     if (range > mf_pair_cutoff(&simulation->law) * (1 + 1e-9))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "force_covariance: the range %g exceeds %g, that of the forces",
+                              "force_covariance: the range %g" STATUS_LENGTH
+                              " exceeds %g" STATUS_LENGTH ", that of the forces",
                               range, mf_pair_cutoff(&simulation->law));
     return STATUS_OK;
 }

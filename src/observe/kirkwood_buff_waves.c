@@ -52,11 +52,11 @@ static enum status find_weights(struct kirkwood_buff_waves *kb) {
     }
     const double spread = count * second - first * first;
     if (!(spread > same * count * second))
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "the waves of the box up to q_maximum %.4g all have one length, so that S(q) cannot be "
-            "extrapolated to q = 0: take a box with more particles",
-            kb->q_maximum);
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the waves of the box up to q_maximum %.4g" STATUS_WAVE_NUMBER
+                              " all have one length, so that S(q) cannot be "
+                              "extrapolated to q = 0: take a box with more particles",
+                              kb->q_maximum);
     for (size_t k = 0; k < waves->vectors; k++)
         kb->weight[k] = (second - squared_length(waves, k) * first) / spread;
     return STATUS_OK;

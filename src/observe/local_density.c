@@ -49,7 +49,8 @@ static enum status begin(void *state, const void *settings,
     }
     if (total > max)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "local_density.cell: %g gives %.3g cells for %zu particles",
+                              "local_density.cell: %g" STATUS_LENGTH
+                              " gives %.3g cells for %zu particles",
                               s->settings.cell, total, s->count);
     s->total = (size_t)total;
     s->volume = mf_box_volume(box) / total;

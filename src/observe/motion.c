@@ -429,22 +429,22 @@ bool mf_motion_is_coarse(const struct motion_summary *s) {
     return s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error);
 }
 
-enum status mf_motion_assess(const struct motion_summary *summary) {
+enum status mf_motion_assess(const struct motion_summary *s) {
     static const double deviations = 4;
-    const struct motion_summary *s = summary;
     const double error = mf_motion_green_kubo_uncertainty(s);
     if (mf_motion_is_coarse(s))
-        return mf_status_fail(
-            STATUS_UNCONVERGED,
-            "D by Green and Kubo, %.3g, may be off by %.2g: the VACF falls by %.0f "
-            "%% from one sample to the next; lower \"motion.every\"",
-            s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
+        return mf_status_fail(STATUS_UNCONVERGED,
+                              "D by Green and Kubo, %.3g" STATUS_DIFFUSION
+                              ", may be off by %.2g" STATUS_DIFFUSION ": the VACF falls by %.0f "
+                              "%% from one sample to the next; lower \"motion.every\"",
+                              s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
     // It is not known of one window.
     if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
-        return mf_status_fail(
-            STATUS_UNCONVERGED,
-            "D is %.3g by the MSD and %.3g by Green and Kubo, with errors of %.1g "
-            "and %.1g: a longer window (\"motion.lags\") may bring them together",
-            s->msd, s->green_kubo, s->msd_error, error);
+        return mf_status_fail(STATUS_UNCONVERGED,
+                              "D is %.3g" STATUS_DIFFUSION " by the MSD and %.3g" STATUS_DIFFUSION
+                              " by Green and Kubo, with errors of %.1g" STATUS_DIFFUSION
+                              " and %.1g" STATUS_DIFFUSION
+                              ": a longer window (\"motion.lags\") may bring them together",
+                              s->msd, s->green_kubo, s->msd_error, error);
     return STATUS_OK;
 }

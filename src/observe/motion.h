@@ -140,4 +140,4 @@ bool mf_motion_is_coarse(const struct motion_summary *summary);
 /// Whether D of the VACF can be trusted: its sampling is off by less than 3 % or its statistical
 /// error, and it agrees with D of the MSD within four combined errors. Fails: UNCONVERGED with the
 /// numbers in the message. Tested: test_motion.
-enum status mf_motion_assess(const struct motion_summary *summary) MUST_USE;
+enum status mf_motion_assess(const struct motion_summary *s) MUST_USE;

@@ -69,7 +69,7 @@ static void write_summary(const void *state, const struct observable_results *re
     struct motion_summary s = mf_motion_result(state, NULL);
     mf_json_begin(writer, "motion");
     mf_statistics_mark_unknown_errors(&s.msd_error, 1);
-    if (mf_units_add_to_message(units, mf_motion_assess(&s)) != STATUS_OK)
+    if (mf_units_convert_message(units, mf_motion_assess(&s)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
     mf_json_put_measured(writer, "diffusion_msd", "lambda^2/tau", s.msd, s.msd_error);
     write_infinite(&s, results, writer);

@@ -117,11 +117,12 @@ static enum status begin(struct rdf *rdf, const struct rdf_bins *bins, const str
 static enum status begin_own_list(struct rdf *rdf) {
     const struct box *const box = &rdf->box;
     if (mf_box_shortest(box) < 2 * mf_rdf_bins_range(&rdf->bins))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "the box is too small for the RDF: its shortest edge %g is below "
-                              "twice the range %g; a larger box with more particles, or a "
-                              "shorter \"range\" of \"rdf\", would do",
-                              mf_box_shortest(box), mf_rdf_bins_range(&rdf->bins));
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "the box is too small for the RDF: its shortest edge %g" STATUS_LENGTH " is below "
+            "twice the range %g" STATUS_LENGTH "; a larger box with more particles, or a "
+            "shorter \"range\" of \"rdf\", would do",
+            mf_box_shortest(box), mf_rdf_bins_range(&rdf->bins));
     TRY(mf_particles_init(&rdf->own_particles, box, rdf->particle_count));
     return mf_neighbours_init(&rdf->manifest, NEIGHBOURS_HALF, box, rdf->particle_count,
                               mf_rdf_bins_range(&rdf->bins), 0);

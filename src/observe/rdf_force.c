@@ -42,11 +42,11 @@ enum status mf_rdf_force_init(struct rdf_force *force, const struct rdf_bins *bi
                                 .blocks = planned < BLOCKS ? planned : BLOCKS,
                                 .needs_own_list = range > list_cutoff * (1 + 1e-9)};
     if (mf_box_shortest(box) < 2 * range)
-        return mf_status_fail(
-            STATUS_BAD_INPUT,
-            "the box is too small for the RDF: its shortest edge %g is below twice "
-            "the range %g",
-            mf_box_shortest(box), range);
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "the box is too small for the RDF: its shortest edge %g" STATUS_LENGTH
+                              " is below twice "
+                              "the range %g" STATUS_LENGTH,
+                              mf_box_shortest(box), range);
     NEW_ARRAY(force->sums, force->blocks * RDF_FORCE_SUMS * bins->count);
     NEW_ARRAY(force->totals, force->blocks);
     NEW_ARRAY(force->pairs, bins->count + 2);

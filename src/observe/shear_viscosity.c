@@ -253,21 +253,24 @@ static enum status assess_wave(const struct viscosity *v, const struct shear_vis
     const double wanted = v->setup.temperature;
     const double rest = (double)v->begin * v->setup.time_step;
     if (!(s->error < 0.2 * fabs(s->value)))
+        return mf_status_fail(STATUS_UNCONVERGED,
+                              "the viscosity is %.2g" STATUS_VISCOSITY
+                              " with an error of %.2g" STATUS_VISCOSITY ": the wave is lost in its "
+                              "noise; raise \"shear-wave.acceleration\" or \"samples\"",
+                              s->value, s->error);
+    if (s->temperature > (1 + hot) * wanted || fabs(s->velocity) > fast * sqrt(wanted))
         return mf_status_fail(
             STATUS_UNCONVERGED,
-            "the viscosity is %.2g with an error of %.2g: the wave is lost in its "
-            "noise; raise \"shear-wave.acceleration\" or \"samples\"",
-            s->value, s->error);
-    if (s->temperature > (1 + hot) * wanted || fabs(s->velocity) > fast * sqrt(wanted))
-        return mf_status_fail(STATUS_UNCONVERGED,
-                              "the wave is too strong, with a temperature of %.3g, not %.3g, and a "
-                              "flow of %.2g; lower \"shear-wave.acceleration\"",
-                              s->temperature, wanted, fabs(s->velocity));
+            "the wave is too strong, with a temperature of %.3g" STATUS_TEMPERATURE
+            ", not %.3g" STATUS_TEMPERATURE ", and a "
+            "flow of %.2g" STATUS_SPEED "; lower \"shear-wave.acceleration\"",
+            s->temperature, wanted, fabs(s->velocity));
     return rest >= settled * s->settling
                ? STATUS_OK
                : mf_status_fail(STATUS_UNCONVERGED,
-                                "the flow relaxes within %.3g, and the measurement began after "
-                                "%.3g; make \"equilibration\" three times as long",
+                                "the flow relaxes within %.3g" STATUS_TIME
+                                ", and the measurement began after "
+                                "%.3g" STATUS_TIME "; make \"equilibration\" three times as long",
                                 s->settling, rest);
 }
 
@@ -280,10 +283,11 @@ static enum status assess(const void *state, const struct simulation_setup *setu
         return assess_wave(v, &s);
     if (s.reached)
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNCONVERGED,
-                          "the Green-Kubo integral of the viscosity has not converged within %.3g; "
-                          "raise \"shear_viscosity.lags\"",
-                          s.window);
+    return mf_status_fail(
+        STATUS_UNCONVERGED,
+        "the Green-Kubo integral of the viscosity has not converged within %.3g" STATUS_TIME "; "
+        "raise \"shear_viscosity.lags\"",
+        s.window);
 }
 
 // Output ------------------------------------------------------------------------------------------
@@ -333,7 +337,7 @@ static void write_summary(const void *state, const struct observable_results *re
     const struct viscosity *v = state;
     struct shear_viscosity_summary s = mf_shear_viscosity_result(v);
     mf_json_begin(writer, "shear_viscosity");
-    if (mf_units_add_to_message(results->units, assess(v, results->setup)) != STATUS_OK)
+    if (mf_units_convert_message(results->units, assess(v, results->setup)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
     mf_statistics_mark_unknown_errors(&s.error, 1);
     mf_json_write_text(writer, "by", s.driven ? "shear-wave" : "green-kubo");

@@ -262,8 +262,9 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     TRY(find(s, &found));
     if (!found.is_slab)
         return warn_no_slab(s, &found);
-    return mf_equilibrium_check("surface tension", sample_series_column(&s->series, TENSION),
-                                s->series.count);
+    return mf_equilibrium_check("surface tension",
+                                s->box.dimensions == 3 ? tension_unit : line_unit,
+                                sample_series_column(&s->series, TENSION), s->series.count);
 }
 
 /// The mean of the densities of a bin over the whole blocks, and its error.
@@ -325,7 +326,7 @@ static void write_summary(const void *state, const struct observable_results *re
     const struct state *s = state;
     struct found found;
     double error;
-    if (mf_units_add_to_message(results->units, assess(s, results->setup)) != STATUS_OK)
+    if (mf_units_convert_message(results->units, assess(s, results->setup)) != STATUS_OK)
         mf_json_write_text(writer, "slab_warning", mf_status_message());
     if (find(s, &found) != STATUS_OK || !found.is_slab)
         return;

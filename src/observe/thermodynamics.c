@@ -209,15 +209,17 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
         return STATUS_OK;
     if (!has_velocities)
         return mf_status_fail(STATUS_UNSTABLE,
-                              "the temperature is %.3g by the positions, not %.3g: %sequilibrate "
+                              "the temperature is %.3g" STATUS_TEMPERATURE
+                              " by the positions, not %.3g" STATUS_TEMPERATURE ": %sequilibrate "
                               "for longer",
                               s->temperature_configurational, wanted,
                               setup->integrator->samples ? "" : "lower \"time_step\", or ");
-    return mf_status_fail(
-        STATUS_UNSTABLE,
-        "the temperature is %.3g by the velocities and %.3g by the positions, not "
-        "%.3g: lower \"time_step\", or equilibrate for longer",
-        s->temperature, s->temperature_configurational, wanted);
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "the temperature is %.3g" STATUS_TEMPERATURE
+                          " by the velocities and %.3g" STATUS_TEMPERATURE " by the positions, not "
+                          "%.3g" STATUS_TEMPERATURE
+                          ": lower \"time_step\", or equilibrate for longer",
+                          s->temperature, s->temperature_configurational, wanted);
 }
 
 /// Whether a temperature is off by more than little and by more than chance.
@@ -235,7 +237,8 @@ enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *su
         return STATUS_OK;
     if (!held && !agrees(s->temperature, s->temperature_error, setup->temperature))
         return mf_status_fail(STATUS_UNSTABLE,
-                              "the temperature is %.3g, not %.3g: there is no thermostat; give the "
+                              "the temperature is %.3g" STATUS_TEMPERATURE
+                              ", not %.3g" STATUS_TEMPERATURE ": there is no thermostat; give the "
                               "scene \"dissipative\", friction and noise",
                               s->temperature, setup->temperature);
     const double wanted = held ? setup->temperature : s->temperature;

@@ -91,12 +91,13 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     const struct thermodynamics_summary s = mf_thermodynamics_result(t, 1);
     const enum status status = mf_thermodynamics_assess(&s, setup);
     if (status == STATUS_UNSTABLE && !is_another(&s, setup))
-        return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_message());
+        return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());
     TRY(status);
-    TRY(mf_equilibrium_check("potential energy",
+    TRY(mf_equilibrium_check("potential energy", "k_B T_0",
                              mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
                              t->series.count));
-    return mf_equilibrium_check("pressure", mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
+    return mf_equilibrium_check("pressure", "k_B T_0/lambda^d",
+                                mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
                                 t->series.count);
 }
 
@@ -105,7 +106,7 @@ static void write_summary(const void *state, const struct observable_results *re
                           struct json_writer *writer) {
     const struct thermodynamics_summary s = mf_thermodynamics_result(state, 1);
     const double known = s.blocks > 1 ? 1 : NAN; // one sample tells no error
-    if (mf_units_add_to_message(results->units, assess(state, results->setup)) != STATUS_OK)
+    if (mf_units_convert_message(results->units, assess(state, results->setup)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
     mf_json_put_measured(writer, "temperature", "T_0", s.temperature, known * s.temperature_error);
     if (isfinite(s.temperature_configurational))

@@ -31,7 +31,8 @@ enum status mf_weighted_density_init(struct weighted_density *density,
     *density = (struct weighted_density){.settings = *settings, .series.columns = SERIES};
     if (!(settings->inner_cutoff < settings->cutoff))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "weighted_density.inner_cutoff: %g is not below the cutoff %g",
+                              "weighted_density.inner_cutoff: %g" STATUS_LENGTH
+                              " is not below the cutoff %g" STATUS_LENGTH,
                               settings->inner_cutoff, settings->cutoff);
     if (settings->maximum == 0)
         density->settings.maximum = room * (number * integrate(settings, box, 1) +

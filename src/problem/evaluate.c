@@ -38,8 +38,9 @@ static enum status equilibrate(struct simulation *simulation, const struct measu
     result->failure = EVALUATE_TEMPERATURE;
     if (fabs(found.mean / wanted - 1) > tolerance + deviations * found.error / wanted)
         return mf_status_fail(STATUS_UNSTABLE,
-                              "the temperature is %.3g after equilibration, not %.3g", found.mean,
-                              wanted);
+                              "the temperature is %.3g" STATUS_TEMPERATURE
+                              " after equilibration, not %.3g" STATUS_TEMPERATURE,
+                              found.mean, wanted);
     // Only what is uniform by itself must stay so.
     result->failure = EVALUATE_COLLAPSED;
     if (simulation->setup.interactions == 0 && has_collapsed(simulation))

@@ -242,7 +242,8 @@ struct inverse_step {
     bool converged; ///< it has settled: by its own measure it can do no better
     bool exhausted; ///< it finished since all was used that it was to use, as populations do, or at
                     ///< a standstill away from a target that may be out of reach
-    char reason[INVERSE_REASON_SIZE]; ///< why it finished without having converged; or ""
+    /// Why it finished without having converged, numbers with the marks of reduced units; or "".
+    char reason[INVERSE_REASON_SIZE];
 };
 
 /// The same for an optimiser that gave up before that.

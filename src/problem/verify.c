@@ -91,7 +91,9 @@ static enum status check_heat(const struct simulation *simulation, double temper
     if (!simulation_has_velocities(setup) || !simulation_holds_temperature(setup) ||
         !(temperature > (1 + hot + deviations * sqrt(2 / degrees)) * wanted))
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNSTABLE, "the temperature is %.3g after equilibration, not %.3g",
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "the temperature is %.3g" STATUS_TEMPERATURE
+                          " after equilibration, not %.3g" STATUS_TEMPERATURE,
                           temperature, wanted);
 }
 
@@ -227,7 +229,7 @@ static enum status summarise(struct measurement *replicas, size_t count,
         thermodynamics, count, &verification->thermodynamics, &replicas->simulation.setup);
     if (mf_thermodynamics_assess_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
         STATUS_OK)
-        snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
+        snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_marked());
     const struct simulation_setup *setup = &replicas->simulation.setup;
     if (!verification->warning[0] && mf_pair_memory_is_coarse(&setup->memory, setup->time_step))
         snprintf(verification->warning, sizeof verification->warning,

@@ -100,7 +100,7 @@ static enum status claim(const char *folder, const char *name) {
     TRY(mf_output_make_folder(path));
     for (int kind = 0; kind < KINDS; kind++) {
         find_figure(folder, name, kind, path);
-        TRY(mf_tracked_files_claim(path));
+        TRY(mf_tracked_files_claim(path, false));
     }
     return STATUS_OK;
 }

@@ -49,15 +49,15 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
 
 /// The fitted target that is farthest off, in its statistical errors, and its name; NaN if the
 /// errors of none are known.
-static double find_farthest(const struct fit_file *fit, const struct fit_result *result,
+static double find_farthest(const struct fit_file *fit, const struct verification *verification,
                             const char **name) {
     double farthest = NAN;
     for (size_t s = 0; s <= fit->others; s++)
         for (int kind = 0; kind < TARGETS; kind++) {
             const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
-            const struct target_distance *distance = &result->verification[s].worst[kind];
+            const struct target_distance *distance = &verification[s].worst[kind];
             if (distance->count == 0)
-                distance = &result->verification[s].distance[kind];
+                distance = &verification[s].distance[kind];
             if (!targets_ask(&state->problem.targets, kind) || !(distance->noise > 0) ||
                 distance->rms / distance->noise <= farthest)
                 continue;
@@ -67,9 +67,34 @@ static double find_farthest(const struct fit_file *fit, const struct fit_result 
     return farthest;
 }
 
+/// How far a target may be off that is met, in its errors: as inversions end.
+static const double within = 1.7;
+
+bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verification *verification,
+                              char reason[INVERSE_REASON_SIZE]) {
+    const struct unknown *const omega = &fit->problem.unknown[UNKNOWN_OMEGA];
+    const char *name = "";
+    char cutoff[UNITS_NAME_SIZE + 32] = "", unit[UNITS_NAME_SIZE];
+    bool finds = false;
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        finds = finds || (unknown_is_omega(kind) && fit->problem.unknown[kind].wanted);
+    const double farthest = find_farthest(fit, verification, &name);
+    if (!finds || !(farthest > within))
+        return false;
+    if (omega->wanted)
+        snprintf(cutoff, sizeof cutoff, ", %g%.64s,",
+                 mf_units_factor(&fit->scene.units, "lambda") * omega->parameters.cutoff,
+                 mf_units_suffix(&fit->scene.units, "lambda", unit));
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the nearest omega of this form is still off: %s by %.2g times its statistical error; "
+             "another cutoff than that given or chosen%s which no fit changes, a \"curve\" with "
+             "more freedom or more \"coefficients\" may do, if the target can be met at all",
+             name, farthest, cutoff);
+    return true;
+}
+
 void mf_fit_closing_verdict(const struct fit_result *result, const char *noise, double farthest,
                             const char *name, char text[FIT_VERDICT_SIZE]) {
-    static const double within = 1.7; // as inversions end
     const bool agrees = farthest <= within;
     const char *word = noise[0]          ? "undetermined"
                        : agrees          ? "success"
@@ -94,7 +119,7 @@ static void print_verdict(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result) {
     const char *name = "";
     char noise[INVERSE_REASON_SIZE] = "", text[FIT_VERDICT_SIZE];
-    const double farthest = find_farthest(fit, result, &name);
+    const double farthest = find_farthest(fit, result->verification, &name);
     mf_fit_closing_is_noise(unknowns, result->curve, result->curve_error, &fit->scene.units, noise);
     mf_fit_closing_verdict(result, noise, farthest, name, text);
     mf_progress_print(to, "result: %s", text);

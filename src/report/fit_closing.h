@@ -23,6 +23,12 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
                              const double *const error[UNKNOWNS], const struct units *units,
                              char reason[INVERSE_REASON_SIZE]);
 
+/// Whether independent simulations of a friction weight that was found are farther from a fitted
+/// target than its errors: such a fit has not converged to it, however well the method settled.
+/// Why, into `reason`. Tested: test_fit_closing.
+bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verification *verification,
+                              char reason[INVERSE_REASON_SIZE]);
+
 enum { FIT_VERDICT_SIZE = 256 };
 
 /// Whether the fit succeeded: it has, if independent simulations agree with the targets within

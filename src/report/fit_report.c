@@ -64,11 +64,12 @@ void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
     snprintf(text, FIELD_TEXT_SIZE, "%.*s", FIELD_TEXT_SIZE - 1, printed);
 }
 
-/// "omega: sigma = 6.00(4) (at its maximum), exponent = 1 (fixed), inner_cutoff = 0.02(1)".
+/// "omega: sigma = 6.00(4) (at its maximum), exponent = 1 (fixed), inner_cutoff = 0.02(1), cutoff
+/// = 1.5 (fixed)".
 static void print_parameters(struct progress *to, const struct fit_file *fit,
                              const struct inverse_parameter *parameter) {
     const struct unknown_parameters *p = &fit->unknown[UNKNOWN_OMEGA].parameters;
-    char line[256];
+    char line[320], unit[UNITS_NAME_SIZE];
     int length = snprintf(line, sizeof line, "%s:", mf_inverse_unknown_names[UNKNOWN_OMEGA]);
     if (!fit->unknown[UNKNOWN_OMEGA].wanted || p->shape != INVERSE_CURVE_POWER)
         return;
@@ -80,14 +81,15 @@ static void print_parameters(struct progress *to, const struct fit_file *fit,
             snprintf(mark, sizeof mark, " (fixed)");
         else if (bound)
             snprintf(mark, sizeof mark, " (at its %s)", bound);
-        const char *unit = mf_inverse_fixed_fields[k].unit;
         length += snprintf(line + length, sizeof line - (size_t)length, "%s %s = %s%s",
                            k > 0 ? "," : "", mf_inverse_fixed_fields[k].name,
-                           mf_units_measured(&fit->scene.units, unit, parameter[k].value,
-                                             parameter[k].error, text),
+                           mf_units_measured(&fit->scene.units, mf_inverse_fixed_fields[k].unit,
+                                             parameter[k].value, parameter[k].error, text),
                            mark);
     }
-    mf_progress_print(to, "%s", line);
+    mf_progress_print(to, "%s, cutoff = %g%s (fixed)", line,
+                      mf_units_factor(&fit->scene.units, "lambda") * p->cutoff,
+                      mf_units_suffix(&fit->scene.units, "lambda", unit));
     if (p->fixed[INVERSE_INNER_CUTOFF] == 0)
         mf_progress_print(to, p->fixed[INVERSE_EXPONENT] == 1
                                   ? "other engines run this omega as it is: LAMMPS (dpd/tstat), "

@@ -406,6 +406,8 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
         mf_json_write_text(writer, "reason", result->reason);
     mf_json_write_text(writer, "method", fit->method->name);
     mf_json_write_text(writer, "method_summary", fit->method->summary);
+    if (fit->choices.thermostat)
+        mf_json_write_text(writer, "friction", "chosen");
     mf_json_write_number(writer, "seconds", result->seconds);
     mf_json_write_number(writer, "threads", fit->problem.threads);
     mf_json_write_number(writer, "iterations", (double)result->iterations);

@@ -279,10 +279,7 @@ void mf_fit_verification_add_units(const struct units *units, struct verificatio
                  verification->unequilibrated);
         return;
     }
-    if (verification->warning[0] == '\0' || !mf_units_are_physical(units))
-        return;
-    mf_units_add_to_message(units, mf_status_fail(STATUS_UNSTABLE, "%s", verification->warning));
-    snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_message());
+    mf_units_convert_text(units, verification->warning, sizeof verification->warning);
 }
 
 /// Whether an error is larger by a quarter, and by five standard errors.

@@ -246,6 +246,21 @@ static void check_mass_given_twice(const struct scene *scene, struct json_object
                       masses.maximum, unit, masses.maximum * unit);
 }
 
+/// In a file in u: a bead that is lighter than any atom was told in another unit. That of an
+/// engine's reduced units may have less than 1.
+static void check_lightest(const struct scene *scene, struct json_object *object) {
+    static const double lightest = 0.1, kg_a_mole = 1e-5; // below, it is no mass of a mole in kg
+    const struct attributes_source *source = &scene->setup.attribute[ATTRIBUTES_MASS];
+    const double unit = scene->units.mass / UNITS_ATOMIC_MASS;
+    const double mass = source->ranges > 0 ? unit * mf_attributes_span(source).minimum : unit;
+    if (mass >= lightest)
+        return;
+    mf_json_fault(object, "particles.mass",
+                  "%g u is less than any atom has: masses are in u, which is g/mol; "
+                  "%s",
+                  mass, mass < kg_a_mole ? "1 kg is 6.02214e+26 u" : "1 kg/mol is 1000 u");
+}
+
 /// Masses that are not in kg and temperatures that are in K.
 static void check_units(const struct scene *scene, struct json_object *object) {
     static const double densest = 30; // g/cm³: no matter is denser
@@ -265,6 +280,8 @@ static void check_units(const struct scene *scene, struct json_object *object) {
                       setup->temperature * scene->units.temperature);
     if (reduced)
         check_mass_given_twice(scene, object);
+    else
+        check_lightest(scene, object);
     const double density = setup->box.dimensions == 3 ? mf_scene_mass_density(scene) : 0;
     if (density > densest && !reduced)
         mf_json_fault(object, "box",
@@ -289,7 +306,7 @@ static void enter_molecules(struct scene *scene, struct json_object *object) {
         return;
     if (mf_json_fault_count(object->document) == 0) {
         if (mf_molecules_check(molecules, &setup->box) != STATUS_OK)
-            mf_json_fault(object, NULL, "%s", mf_status_message());
+            mf_json_fault(object, NULL, "%s", mf_status_marked());
         else
             mf_scene_molecules_warn_of_box(&scene->molecules, &setup->box, setup->temperature);
     }

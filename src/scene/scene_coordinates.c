@@ -175,6 +175,6 @@ enum status mf_scene_coordinates_read(struct scene *scene, struct json_object *p
     mf_frame_clear(&frame);
     if (status == STATUS_OK || status == STATUS_NO_MEMORY)
         return status;
-    mf_json_fault(particles, "file", "%s", mf_status_message());
+    mf_json_fault(particles, "file", "%s", mf_status_marked());
     return STATUS_OK;
 }

@@ -19,9 +19,9 @@ static enum status load_points(struct bonded_curve *curve, int order, struct jso
     enum status status =
         mf_scene_read_columns(table->file, unit, bonded_min(order), units, &q, &energy, &count);
     if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
+        mf_json_fault(object, "file", "%s", mf_status_marked());
     else if ((status = mf_bonded_table_set_points(curve, q, energy, count)) != STATUS_OK)
-        mf_json_fault(object, "file", "%s: %s", table->file, mf_status_message());
+        mf_json_fault(object, "file", "%s: %s", table->file, mf_status_marked());
     mf_memory_free(q);
     mf_memory_free(energy);
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
@@ -43,6 +43,7 @@ static enum status read_group(struct molecules *molecules, int order, struct jso
     const size_t faults = mf_json_fault_count(object.document);
     TRY(mf_molecules_add_group(molecules, order, name, law));
     mf_json_fields(&object, law->fields, group->curve.parameters);
+    mf_json_fields_need_scale(&object, law->fields);
     if (bonded_is_table(law) && mf_json_fault_count(object.document) == faults)
         TRY(load_points(&group->curve, order, &object, units));
     mf_json_finish(&object);
@@ -126,7 +127,7 @@ enum status mf_scene_groups_open(struct molecules *molecules, struct json_object
 /// A fault of a name that no molecule's terms have.
 static void fault_unused(struct json_object *object, const char *name, int order,
                          const struct molecules *molecules) {
-    const char *known[MOLECULES_MAX_GROUPS];
+    const char *known[MOLECULES_MAX_GROUPS] = {0};
     const size_t count = (size_t)molecules->groups[order];
     char hint[1024];
     for (size_t g = 0; g < count; g++)

@@ -85,6 +85,12 @@ static enum status read_columns(const char *file, const char *const unit[2], dou
     TRY(core ? mf_data_table_read_core(&table, file) : mf_data_table_read(&table, file, 2));
     if (core && is_of_gromacs(&table))
         TRY(take_gromacs(&table, file));
+    else if (is_of_gromacs(&table))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: seven columns without names, as GROMACS has a potential of pairs, "
+            "which this is not: leave two, the argument and the values",
+            file);
     if (mf_data_table_is_numbered(&table))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: column 1 numbers the rows: leave it out, so that %s is first",
@@ -143,9 +149,9 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
                  : read_columns(parameters->file, (const char *[]){"lambda", unit}, 0,
                                 curve->family == &mf_sampled_family, units, &r, &value, &count);
     if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
+        mf_json_fault(object, "file", "%s", mf_status_marked());
     else if (mf_sampled_set_points(curve, r, value, count) != STATUS_OK)
-        mf_json_fault(object, "file", "%s: %s", parameters->file, mf_status_message());
+        mf_json_fault(object, "file", "%s: %s", parameters->file, mf_status_marked());
     mf_memory_free(r);
     mf_memory_free(value);
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
@@ -176,11 +182,12 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
         const size_t faults = mf_json_fault_count(object.document);
         TRY(mf_curve_create(curve, family));
         mf_json_fields(&object, family->fields, curve->parameters);
+        mf_json_fields_need_scale(&object, family->fields);
         if (curve_is_sampled(family) && mf_json_fault_count(object.document) == faults)
             TRY(load_points(curve, unit, &object, units));
         mf_curve_scale(curve, mf_units_factor(units, "lambda"), mf_units_factor(units, unit));
         if (mf_json_fault_count(object.document) == faults && mf_curve_check(curve) != STATUS_OK)
-            mf_json_fault(&object, NULL, "%s", mf_status_message());
+            mf_json_fault(&object, NULL, "%s", mf_status_marked());
         if (!is_usable(curve))
             mf_curve_clear(curve);
     }

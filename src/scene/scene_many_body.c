@@ -70,9 +70,9 @@ static enum status load_points(struct curve *curve, struct json_object *object,
     if (status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
+        mf_json_fault(object, "file", "%s", mf_status_marked());
     else if (mf_density_energy_set_points(curve, x, f, count) != STATUS_OK)
-        mf_json_fault(object, "file", "%s: %s", file, mf_status_message());
+        mf_json_fault(object, "file", "%s: %s", file, mf_status_marked());
     return STATUS_OK;
 }
 
@@ -100,7 +100,7 @@ static enum status read_energy(struct curve *curve, struct density_energy *energ
         return STATUS_OK;
     const enum status status = mf_density_energy_init(energy, curve);
     if (status == STATUS_BAD_INPUT)
-        mf_json_fault(&object, NULL, "%s", mf_status_message());
+        mf_json_fault(&object, NULL, "%s", mf_status_marked());
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
@@ -116,7 +116,7 @@ static enum status read_weight(struct curve *curve, struct weight_table *weight,
     mf_weight_set_dimensions(curve, dimensions);
     const enum status status = mf_weight_tabulate(weight, curve);
     if (status == STATUS_BAD_INPUT)
-        mf_json_fault(parent, "weight", "%s", mf_status_message());
+        mf_json_fault(parent, "weight", "%s", mf_status_marked());
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
@@ -199,7 +199,7 @@ static enum status read_term(struct scene_many_body *many_body, struct json_obje
     mf_json_finish(&own);
     if (mf_json_fault_count(own.document) == faults && !scene_many_body_is_fitted(many_body, t) &&
         mf_density_energy_check_weight(&many_body->energy[t], &many_body->weight[t]) != STATUS_OK)
-        mf_json_fault(&own, "energy", "%s", mf_status_message());
+        mf_json_fault(&own, "energy", "%s", mf_status_marked());
     return STATUS_OK;
 }
 

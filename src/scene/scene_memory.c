@@ -19,7 +19,7 @@ static enum status tabulate(struct scene_law *law, struct json_object *object, c
     for (int row = 0; row < table->curves * (TABLE_INTERVALS + 1); row++)
         if (table->coefficient[2 * row] < 0) {
             const int pair = row / (TABLE_INTERVALS + 1), k = row % (TABLE_INTERVALS + 1);
-            mf_json_fault(object, key, "omega is negative at r = %g",
+            mf_json_fault(object, key, "omega is negative at r = %g" STATUS_LENGTH,
                           k / mf_table_inverse_spacing(table, pair));
             return STATUS_OK;
         }

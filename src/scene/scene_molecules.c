@@ -252,7 +252,7 @@ static enum status enter_kind(struct reading *reading, size_t faults) {
     struct topology_kind *kind = &reading->kind;
     const struct json_document *document = reading->object.document;
     if (mf_json_fault_count(document) == faults && mf_topology_check(kind) != STATUS_OK)
-        mf_json_fault(&reading->object, NULL, "%s", mf_status_message());
+        mf_json_fault(&reading->object, NULL, "%s", mf_status_marked());
     if (mf_json_fault_count(document) > faults) {
         mf_topology_kind_clear(kind);
         return STATUS_OK;

@@ -87,7 +87,7 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
     struct data_table table = {0};
     enum status status = read_file(&table, scene);
     if (status != STATUS_OK) {
-        mf_json_fault(particles, "file", "%s", mf_status_message());
+        mf_json_fault(particles, "file", "%s", mf_status_marked());
         return status == STATUS_NO_MEMORY ? status : STATUS_OK;
     }
     const size_t motion = mf_scene_attributes_first_column(&table);
@@ -98,7 +98,7 @@ static enum status read_positions(struct scene *scene, struct json_object *parti
     }
     if (convert(&table, placement->file, dimensions, motion, mf_json_units(particles)) !=
         STATUS_OK) {
-        mf_json_fault(particles, "file", "%s", mf_status_message());
+        mf_json_fault(particles, "file", "%s", mf_status_marked());
         goto done;
     }
     if (!are_near(scene, &table, particles))

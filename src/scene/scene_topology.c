@@ -72,6 +72,6 @@ enum status mf_scene_topology_read(struct scene_molecules *molecules, struct jso
     if (status == STATUS_NO_MEMORY)
         return status;
     if (status != STATUS_OK)
-        mf_json_fault(object, "file", "%s", mf_status_message());
+        mf_json_fault(object, "file", "%s", mf_status_marked());
     return STATUS_OK;
 }

@@ -67,8 +67,9 @@ enum status mf_neighbours_init(struct neighbours *neighbours, enum neighbours_ki
     if (mf_box_shortest(box) < 2 * cutoff)
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "the box is too small: its shortest edge %g is below twice the cutoff "
-            "%g, so the nearest image is not the only one in range; a larger box with more "
+            "the box is too small: its shortest edge %g" STATUS_LENGTH " is below twice the cutoff "
+            "%g" STATUS_LENGTH
+            ", so the nearest image is not the only one in range; a larger box with more "
             "particles, or a shorter cutoff, would do",
             mf_box_shortest(box), cutoff);
     // A particle may meet only the nearest image of another, also in the skin.

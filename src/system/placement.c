@@ -169,11 +169,11 @@ enum status mf_placement_random(struct particles *particles, double separation, 
         uint32_t trial = 0;
         do {
             if (trial == TRIALS) {
-                status =
-                    mf_status_fail(STATUS_BAD_INPUT,
-                                   "no room for particle %zu of %zu at a least distance of %g: "
-                                   "lower \"separation\" or place on a lattice",
-                                   k + 1, particles->count, separation);
+                status = mf_status_fail(
+                    STATUS_BAD_INPUT,
+                    "no room for particle %zu of %zu at a least distance of %g" STATUS_LENGTH ": "
+                    "lower \"separation\" or place on a lattice",
+                    k + 1, particles->count, separation);
                 goto done;
             }
             const struct rng_block block =

@@ -113,7 +113,7 @@ static enum status load(struct target_curve *curve, const struct observable_targ
                                      .error = p->error_column,
                                      .may_be_unknown = !of_time};
     TRY(mf_target_rows_read(rows, &columns, units));
-    if (columns.numbered && rows->x[0] > 0) // an MSD may grow as evenly from 0
+    if (columns.numbered && (rows->x[0] > 0 || columns.even)) // from 0 an MSD may grow, too
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: column %lld numbers the rows, and column %lld grows as %s "
                               "does: set \"%s\" to %lld and \"value_column\" to that of the values",

@@ -76,12 +76,28 @@ static enum status find_interval(const struct data_table *table, const char *fil
     return STATUS_OK;
 }
 
+/// Before a column of times, where E has probabilities that fall.
+static enum status check_numbered(const struct data_table *table, const char *file,
+                                  const struct target_etd_parameters *p) {
+    const size_t time = (size_t)p->time_column - 1;
+    if (time + 1 >= table->columns || !mf_data_table_numbers_rows(table, time) ||
+        !mf_data_table_is_spaced(table, time + 1, DATA_ROUNDING))
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: column %zu numbers the rows, and column %zu grows as a time does: "
+        "set \"time_column\" to %zu and \"first_column\" to that of the first bin",
+        file, time + 1, time + 2, time + 2);
+}
+
 /// Read a matrix and check its numbers: those of E are probabilities, errors are not negative.
 static enum status read_table(struct data_table *table, const char *file,
                               const struct target_etd_parameters *p, const struct units *units,
                               double largest) {
     const size_t before = (size_t)p->first_column - 1;
     TRY(mf_data_table_read(table, file, before));
+    if (largest == 1)
+        TRY(check_numbered(table, file, p));
     TRY(mf_data_table_convert(table, file, (size_t)p->time_column - 1, "tau", units));
     if (table->columns == before)
         return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, at least %zu are needed",

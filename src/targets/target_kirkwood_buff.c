@@ -42,7 +42,7 @@ static enum status read(struct target_files *files, int kind, struct json_object
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     if (mf_components_find(&target->components, composition,
                            (size_t)mf_composition_particles(composition), topology) != STATUS_OK) {
-        mf_json_fault(object, NULL, "%s", mf_status_message());
+        mf_json_fault(object, NULL, "%s", mf_status_marked());
         return STATUS_OK;
     }
     target->pairs = (size_t)mf_composition_pairs(components);

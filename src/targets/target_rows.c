@@ -79,7 +79,9 @@ static enum status find_columns(struct target_columns *columns, const struct dat
     if (columns->error > 0 && !is_known(table, columns->error))
         columns->error = 0;
     columns->numbered = mf_data_table_numbers_rows(table, (size_t)columns->x - 1) &&
-                        mf_data_table_is_spaced(table, (size_t)columns->y - 1);
+                        mf_data_table_is_spaced(table, (size_t)columns->y - 1, DATA_ROUNDING);
+    columns->even = columns->numbered && columns->y < (int64_t)table->columns &&
+                    mf_data_table_is_spaced(table, (size_t)columns->y - 1, DATA_EXACT);
     columns->is_usual_error =
         columns->error > 0 && columns->usual_error &&
         columns->error == (int64_t)mf_data_table_find(table, columns->usual_error);
@@ -139,7 +141,7 @@ enum status mf_target_rows_read_votca(struct target_rows *rows, const char *file
 enum status mf_target_rows_fault(struct json_object *object, const char *key, enum status status) {
     if (status == STATUS_OK || status == STATUS_NO_MEMORY)
         return status;
-    mf_json_fault(object, key, "%s", mf_status_message());
+    mf_json_fault(object, key, "%s", mf_status_marked());
     return STATUS_OK;
 }
 

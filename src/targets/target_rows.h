@@ -33,6 +33,7 @@ struct target_columns {
     const char *usual_error; ///< what programs call a column of errors
     bool is_usual_error;     ///< found: it is called so
     bool numbered;           ///< found: x numbers the rows, and y grows as an argument does
+    bool even;               ///< found: and does so by equal steps, before another column
 };
 
 /// Read rows whose x grows. The numbers of errors are as they are, be they nan. `columns` are those

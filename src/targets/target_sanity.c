@@ -117,6 +117,9 @@ static double integral_of(const struct view *view, int a, int b) {
 /// around it than on the whole, and fewer of the other's, as within the phases of a box with two.
 static void print_demixing(const struct view *view, char *text, size_t size) {
     const struct composition *composition = &view->scene->setup.composition;
+    double length;
+    const char *const unit = unit_of(view, &length);
+    const double volume = length * length * length;
     text[0] = '\0';
     for (int b = 1; b < composition->types && view->scene->setup.box.dimensions == 3; b++)
         for (int a = 0; a < b && text[0] == '\0'; a++) {
@@ -126,8 +129,9 @@ static void print_demixing(const struct view *view, char *text, size_t size) {
             if (first > 0 && second > 0 && unlike < 0)
                 snprintf(text, size,
                          "; or have %s and %s demixed? Their integrals of g - 1 are %.3g (%s-%s), "
-                         "%.3g (%s-%s) and %.3g (%s-%s) lambda^3",
-                         one, other, first, one, one, second, other, other, unlike, one, other);
+                         "%.3g (%s-%s) and %.3g (%s-%s) %s^3",
+                         one, other, volume * first, one, one, volume * second, other, other,
+                         volume * unlike, one, other, unit);
         }
 }
 
@@ -436,6 +440,7 @@ enum status mf_target_sanity_report(const struct target_files *files, const stru
         warn_of_density(&view, listener);
     }
     mf_target_sanity_report_groups(files, scene, listener);
+    mf_target_sanity_report_pressure(files, scene, listener);
     mf_target_sanity_report_normalisation(&files->normalisation, listener);
     char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))

@@ -50,6 +50,11 @@ enum status mf_target_sanity_report(const struct target_files *files, const stru
 void mf_target_sanity_report_groups(const struct target_files *files, const struct scene *scene,
                                     const struct target_sanity_listener *listener);
 
+/// Warn of a pressure that no fluid of this density has, as one in Pa that should be in bar.
+/// Tested: cli/test_target_sanity.
+void mf_target_sanity_report_pressure(const struct target_files *files, const struct scene *scene,
+                                      const struct target_sanity_listener *listener);
+
 /// Tell what was made of a table of g(r) without equal bins, or with a g slightly below 0.
 void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
                                      const struct scene *scene,

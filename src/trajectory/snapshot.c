@@ -261,12 +261,12 @@ enum status mf_snapshot_translate(struct snapshot *converted, const struct snaps
 static enum status write_whole(const struct snapshot *snapshot,
                                const struct snapshot_format *format, const char *path) {
     struct output output;
-    TRY(mf_output_open(&output, path));
+    TRY(mf_output_open_later(&output, path));
     format->print(snapshot, output.stream);
     return mf_output_commit(&output);
 }
 
-/// Print after the first *size bytes of a file, all of which is on the disk at the end.
+/// Print after the first *size bytes of a file.
 static int append(const struct snapshot *snapshot, const struct snapshot_format *format, int file,
                   int64_t *size) {
     if (ftruncate(file, *size) != 0)
@@ -277,10 +277,9 @@ static int append(const struct snapshot *snapshot, const struct snapshot_format 
     format->print(snapshot, stream);
     errno = 0;
     int error = fflush(stream) != 0 || ferror(stream) ? (errno ? errno : EIO) : 0;
-    if (error == 0 && fsync(file) != 0 && errno != EINVAL && errno != ENOSYS)
-        error = errno;
     const int64_t end = ftello(stream);
     fclose(stream);
+    mf_output_leave_for_later();
     if (error == 0)
         *size = end;
     else if (ftruncate(file, *size) != 0) // what was there before is what counts
@@ -291,7 +290,7 @@ static int append(const struct snapshot *snapshot, const struct snapshot_format 
 static enum status write_appended(const struct snapshot *snapshot,
                                   const struct snapshot_format *format, const char *path,
                                   int64_t *size) {
-    TRY(mf_tracked_files_claim(path));
+    TRY(mf_tracked_files_claim(path, true));
     const int file = open(path, O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     const int error = file < 0 ? errno : append(snapshot, format, file, size);
     if (file >= 0)

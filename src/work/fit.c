@@ -53,7 +53,6 @@ struct run {
         char formula[FIELD_TEXT_SIZE]; ///< or ""
     } standing;
     struct fit_dampings changes;
-    bool doubted; ///< by the verification
 };
 
 static struct history_time time_of(const struct run *run) {
@@ -142,7 +141,8 @@ static enum status read_and_create(struct run *run, const char *file,
     TRY(mf_fit_states_normalise(&run->fit));
     const enum status status = create(run);
     if (status != STATUS_OK)
-        return mf_status_prefix(mf_units_add_to_message(&run->fit.scene.units, status), "%s", file);
+        return mf_status_prefix(mf_units_convert_message(&run->fit.scene.units, status), "%s",
+                                file);
     return mf_fit_reserve_curves(&run->fit, &run->unknowns, &run->folder);
 }
 
@@ -268,6 +268,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.number, step->number, sizeof run->standing.number);
     memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
+    mf_units_convert_text(&run->fit.scene.units, run->standing.reason, INVERSE_REASON_SIZE);
     mf_fit_report_formula(&run->fit, step->formula, run->standing.formula);
     TRY(mf_history_add(&run->history, step, run->standing.time));
     TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->fit.scene.units,
@@ -338,14 +339,14 @@ static void doubt(struct run *run, const struct verification *verification) {
     struct standing *standing = &run->standing;
     if (!standing->converged && !standing->exhausted)
         return;
-    run->doubted = mf_fit_verify_any_contradicts(&run->fit, verification, &standing->accuracy,
-                                                 standing->reason);
-    if (run->doubted)
+    if (mf_fit_verify_any_contradicts(&run->fit, verification, &standing->accuracy,
+                                      standing->reason))
         standing->converged = standing->exhausted = false;
     else if (standing->converged &&
-             mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
-                                     (const double *const *)run->curve_error, &run->fit.scene.units,
-                                     standing->reason)) {
+             (mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
+                                      (const double *const *)run->curve_error,
+                                      &run->fit.scene.units, standing->reason) ||
+              mf_fit_closing_is_missed(&run->fit, verification, standing->reason))) {
         standing->converged = false;
         standing->exhausted = true;
     }
@@ -388,8 +389,7 @@ static enum status verify_and_write(struct run *run) {
     mf_fit_closing_print(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
-        mf_fit_print_unconverged(&run->fit, run->folder.path, &run->standing.accuracy,
-                                 run->standing.reason, run->doubted);
+        mf_fit_print_unconverged(run->folder.path, &run->standing.accuracy, run->standing.reason);
 done:
     for (size_t s = 0; verification && s < states; s++)
         mf_verify_clear(&verification[s]);
@@ -421,7 +421,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     run->spent_origin = mf_spent();
     run->progress.may_end_early = true; // it may converge before the last iteration
     CHECK(prepare(run, file, options));
-    status = iterate(run);
+    status = mf_units_convert_message(&run->fit.scene.units, iterate(run));
     if (status == STATUS_OK)
         status = verify_and_write(run);
     if (status == STATUS_INTERRUPTED)

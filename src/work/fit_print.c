@@ -145,9 +145,8 @@ void mf_fit_print_iteration(const struct inverse_progress *now, const struct uni
     snprintf(text, FIT_TELL_SIZE, "iteration %u%s%s%s", now->iteration, error, min, mean);
 }
 
-void mf_fit_print_unconverged(const struct fit_file *fit, const char *folder,
-                              const struct fit_accuracy *accuracy, const char *reason,
-                              bool doubted) {
+void mf_fit_print_unconverged(const char *folder, const struct fit_accuracy *accuracy,
+                              const char *reason) {
     if (isfinite(accuracy->error))
         mf_status_fail(STATUS_UNCONVERGED,
                        "the fit has not converged%s%s; its best curves are in %s",
@@ -161,9 +160,6 @@ void mf_fit_print_unconverged(const struct fit_file *fit, const char *folder,
                        "not one simulation of the fit succeeded; the failures are counted in "
                        "%s/history.tsv",
                        folder);
-    // The reason of the verification is in the units of the file; most reasons have no units.
-    if (!doubted && (strstr(reason, "pressure") || strstr(reason, "k_B T_0")))
-        mf_units_add_to_message(&fit->scene.units, STATUS_UNCONVERGED);
 }
 
 void mf_fit_print_warnings(struct progress *to, const struct fit_file *fit,

@@ -30,7 +30,5 @@ void mf_fit_print_warnings(struct progress *to, const struct fit_file *fit,
 
 /// The message of a fit that has not converged. A method without an error and without a reason has
 /// not measured anything.
-/// @param[in] doubted  by the verification, whose reason this is
-void mf_fit_print_unconverged(const struct fit_file *fit, const char *folder,
-                              const struct fit_accuracy *accuracy, const char *reason,
-                              bool doubted);
+void mf_fit_print_unconverged(const char *folder, const struct fit_accuracy *accuracy,
+                              const char *reason);

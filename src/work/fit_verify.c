@@ -44,7 +44,7 @@ static enum status advise(const struct fit_file *state, const struct verify_step
     const struct units *units = &state->scene.units;
     const double time = mf_units_factor(units, "tau");
     char unit[UNITS_NAME_SIZE], message[STATUS_MESSAGE_SIZE];
-    if (status != STATUS_UNSTABLE)
+    if (mf_units_convert_message(units, status) != STATUS_UNSTABLE)
         return status;
     snprintf(message, sizeof message, "%s", mf_status_message());
     mf_units_suffix(units, "tau", unit);

@@ -78,11 +78,12 @@ static void print_motion(struct progress *progress, const struct measure_result 
     else
         print_diffusion(progress, result);
     const struct etd_grid *const grid = &motion->etd.grid;
-    if (mf_etd_complete(&motion->etd) > 0 && mf_etd_pairs(&motion->etd) == 0)
+    const bool complete = mf_etd_complete(&motion->etd) > 0;
+    if (complete && mf_etd_pairs(&motion->etd) == 0)
         mf_progress_print(progress,
                           "mesofit: warning: no escape times: no pair was between %.4g and %.4g nm",
                           grid->r_minimum, grid->r_maximum);
-    else
+    else if (complete)
         mf_progress_print(
             progress, "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
             grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);

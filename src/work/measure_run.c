@@ -104,10 +104,30 @@ static enum status read_molecules(struct run *run) {
                                      &run->structure.structure, request->map != NULL);
 }
 
+/// Names, residues and masses are of -s alone, if it is given.
+static enum status open_structure(struct run *run) {
+    const struct measure_request *const request = run->request;
+    const struct structure *const has = &run->structure.structure;
+    const enum status status =
+        mf_trajectory_open(&run->structure, structure_file(run), &request->frames.options);
+    if (request->structure == NULL)
+        return status;
+    if (status != STATUS_OK)
+        return mf_status_prefix(status, "-s");
+    if (has->has_names || has->has_residues || has->has_elements || has->has_molecules ||
+        has->has_types || has->has_masses)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "-s: %s: the format \"%s\" says where atoms are, and not what: give a .gro, "
+        ".pdb, .top, .psf or data file of LAMMPS of the same atoms",
+        request->structure, run->structure.format->name);
+}
+
 /// What the atoms are, which of them are beads, and what molecules there may be.
 static enum status find_beads(struct run *run) {
     const struct measure_request *const request = run->request;
-    TRY(mf_trajectory_open(&run->structure, structure_file(run), &request->frames.options));
+    TRY(open_structure(run));
     TRY(read_molecules(run));
     TRY(request->molecules && !request->map ? take_atoms(run) : map_atoms(run));
     print_lines(&run->progress, &run->mapping.notes);

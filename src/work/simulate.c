@@ -259,7 +259,7 @@ static enum status begin_measuring(struct run *run, const char *file) {
         status = mf_simulate_observables_begin(&run->observables, &run->simulation, &run->plan);
     return status == STATUS_OK
                ? status
-               : mf_status_prefix(mf_units_add_to_message(&run->scene.units, status), "%s", file);
+               : mf_status_prefix(mf_units_convert_message(&run->scene.units, status), "%s", file);
 }
 
 static enum status begin_folder(struct run *run, bool resume) {
@@ -397,7 +397,7 @@ enum status mf_simulate_file(const char *file, const struct run_options *options
     run->pace.interval = run->pace.next = checkpoint_interval;
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     CHECK(prepare(run, file, options));
-    status = mf_units_add_to_message(&run->scene.units, carry_out(run));
+    status = mf_units_convert_message(&run->scene.units, carry_out(run));
     if (status == STATUS_INTERRUPTED)
         status = write_interrupted(run);
     if (status == STATUS_UNSTABLE) // it would be so again

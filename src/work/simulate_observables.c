@@ -224,7 +224,7 @@ void mf_simulate_observables_print(const struct simulate_observables *observable
                                        ? use->observable->assess(use->state, results->setup)
                                        : STATUS_OK;
         // What is wrong ends the run, and is not a warning.
-        if (mf_units_add_to_message(results->units, status) != STATUS_OK &&
+        if (mf_units_convert_message(results->units, status) != STATUS_OK &&
             status != STATUS_UNSTABLE)
             mf_progress_print(to, "mesofit: warning: %s", mf_status_message());
     }
@@ -236,7 +236,7 @@ enum status mf_simulate_observables_judge(const struct simulate_observables *obs
         const enum status status = use->observable->assess
                                        ? use->observable->assess(use->state, results->setup)
                                        : STATUS_OK;
-        if (mf_units_add_to_message(results->units, status) == STATUS_UNSTABLE)
+        if (mf_units_convert_message(results->units, status) == STATUS_UNSTABLE)
             return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_message());
     }
     return STATUS_OK;

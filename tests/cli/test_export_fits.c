@@ -232,6 +232,25 @@ static void test_friction_that_cannot_be_written_is_one_line(void **state) {
                    "no friction weight"); // white friction is left out, too
 }
 
+/// What the program chose to hold the temperature is no result that an engine leaves out, and no D
+/// follows from it; what the scene says is.
+static void test_friction_that_was_chosen_is_not_left_out(void **state) {
+    static const char friction[] = ",\n    \"dissipative\": {\"law\": \"power\", \"sigma\": 2}";
+    static struct run_program_result result;
+    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
+    for (int own = 0; own < 2; own++) {
+        small_inputs_write(*state, "run.json", small_inputs_run, friction, own ? friction : "");
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--force"); // that need not converge
+        RUN_PROGRAM(&result, "export", "fit", "--engine", "gromacs", "-o", "gromacs", "--force");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.err, "friction   no result, but chosen to hold") == NULL,
+                         own);
+        assert_int_equal(strstr(result.err, "omega(r), conserved momentum and flow are left out") &&
+                             strstr(result.err, "simulating"),
+                         own);
+    }
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -245,6 +264,7 @@ int main(void) {
         TEST(test_projection_of_a_power_law_costs_nothing),
         TEST(test_projection_is_made_for_the_engine_and_its_cost_is_told),
         TEST(test_friction_that_cannot_be_written_is_one_line),
+        TEST(test_friction_that_was_chosen_is_not_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

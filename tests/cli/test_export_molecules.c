@@ -228,11 +228,26 @@ static void read_log(double energy[BONDED_KINDS]) {
     fclose(stream);
 }
 
+/// The commands that the folder's README begins with, with options of ours behind each.
+static void find_commands(char commands[512]) {
+    char *readme = temporary_folder_read("gromacs/README");
+    const char *grompp = strstr(readme, "    gmx grompp"), *mdrun = strstr(readme, "    gmx mdrun");
+    assert_non_null(grompp);
+    assert_true(mdrun > grompp && strstr(mdrun + 8, "gmx ") == NULL);
+    snprintf(
+        commands, 512,
+        "cd gromacs && sed 's/ A 0.0 1.0$/ A 0.0 0.0/' topol.top >once.top && (%.*s -f once.mdp "
+        "-p once.top -maxwarn 9 && %.*s -nt 1) >gmx.out 2>&1",
+        (int)strcspn(grompp, "\n"), grompp, (int)strcspn(mdrun, "\n"), mdrun);
+    free(readme);
+}
+
 /// Debian's GROMACS has no tables of pairs, whose energies are left out: the terms alone.
 static void compare_gromacs(struct temporary_folder *folder, bool with_tables, double per_term) {
     static struct run_program_result result;
     static struct ours ours;
     double energy[BONDED_KINDS] = {0};
+    char commands[512];
     skip_without("gmx");
     make_result(folder, with_tables);
     RUN_PROGRAM(&result, "export", "out", "--engine", "gromacs", "-o", "gromacs");
@@ -241,10 +256,8 @@ static void compare_gromacs(struct temporary_folder *folder, bool with_tables, d
                        "integrator = md\nnsteps = 0\nnstenergy = 1\nnstlog = 1\nrcoulomb = 0.9\n"
                        "rvdw = 0.9\ncontinuation = yes\n",
                        NULL, NULL);
-    if (system(
-            "cd gromacs && sed 's/ A 0.0 1.0$/ A 0.0 0.0/' topol.top >once.top && (gmx grompp -f "
-            "once.mdp -p once.top -n index.ndx -o once.tpr -maxwarn 9 && gmx mdrun -nt 1 -s "
-            "once.tpr $(ls table_[bad]?.xvg | sed '1s/^/-tableb /')) >gmx.out 2>&1") != 0)
+    find_commands(commands);
+    if (system(commands) != 0)
         fail_msg("GROMACS failed: see gromacs/gmx.out");
     find_ours(&ours);
     read_log(energy);

@@ -47,6 +47,7 @@ static void test_twin_of_the_family_is_found(void **state) {
     static struct run_program_result result;
     write_run(*state, "", omega);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit", "--friction", "exportable");
+    assert_contains(result.err, "inner_cutoff = 0 (fixed), cutoff = 1 (fixed)\n");
     assert_contains(result.err, "LAMMPS runs this omega as it is: dpd/ext/tstat");
     const double exponent = results_number("fit/summary.json", "parameters.omega.exponent.value");
     const double error = results_number("fit/summary.json", "parameters.omega.exponent.error");

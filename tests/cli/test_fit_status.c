@@ -233,6 +233,9 @@ static void test_unstable_verification_tells_its_time_step_in_the_units_of_the_f
     small_inputs_write(*state, "run.json", text, "{\"count\": 81}",
                        "{\"count\": 81, \"mass\": 2.5}, \"temperature\": 300");
     free(text);
+    text = temporary_folder_read("run.json");
+    small_inputs_write(*state, "run.json", text, "\"sigma\": 2", "\"sigma\": 2, \"cutoff\": 0.7");
+    free(text);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
     run_program_assert_code(&result, 1);
     assert_contains(result.err, advice);

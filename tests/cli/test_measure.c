@@ -132,6 +132,9 @@ static void test_measure_has_motion_of_the_frames_that_are_used(void **state) {
             "Ar %05.3f 0 0\nAr %05.3f 0 0\n",
             1000 * k, 5 + 0.005 * k, 9 - 0.005 * k);
     temporary_folder_write(*state, "long.xyz", text, length);
+    MEASURE("long.xyz", "--begin", "198", "-o", "two frames");
+    assert_contains(result.err, "no motion, no escape times: 2 frames are no window");
+    assert_null(strstr(result.err, "escape times of pairs"));
     MEASURE("long.xyz", "--begin", "179.5", "-o", "end", "--quiet");
     assert_close(results_number("end/summary.json", "frames"), 20, 0);
     assert_close(results_number("end/summary.json", "window"), 2, 1e-9);
@@ -292,6 +295,8 @@ static const struct {
     {{"XTC", "-s", "missing.gro"}, {"missing.gro"}},
     {{"missing.xtc", "-s", "GRO"}, {"missing.xtc"}},
     {{"XTC", "-s", "small.gro"}, {"has 8232 atoms", "small.gro has 3"}},
+    {{"XTC", "-s", "map.json"}, {"-s: map.json: not a trajectory: read are"}},
+    {{"XTC", "-s", "XTC"}, {"-s: ", "\"xtc\" says where atoms are, and not what: give a .gro"}},
     {{"XTC", "-s", "GRO", "--map", "oxygen.json"}, {"oxygen.json: atom 2", "belongs to no bead"}},
     {{"XTC", "-s", "GRO", "--map", "wrong.json"}, {"wrong.json: residue 1", "atoms \"CA\""}},
     {{"odd.gro", "--map", "map.json"},

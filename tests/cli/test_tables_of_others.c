@@ -134,6 +134,11 @@ static void test_tables_of_others_are_refused_when_they_say_too_little(void **st
     refuse(*state, scene, INDEXED, "column 1 numbers the rows: leave it out, so that r is first");
     refuse(*state, scene, GROMACS_CHARGES,
            "write r and the potential, C6 g + C12 h, in two columns");
+    static const char friction[] =
+        "{\"box\": [4, 4, 4], \"time_step\": 0.01, \"particles\": {\"count\": 150},\n"
+        "\"dissipative\": {\"law\": \"table\", \"file\": \"law.tsv\"}}\n";
+    refuse(*state, friction, GROMACS_C12,
+           "seven columns without names, as GROMACS has a potential of pairs, which this is not");
     refuse(*state, scene, SECTIONS, "law.tsv:48: a second section of LAMMPS begins");
 }
 
@@ -157,6 +162,23 @@ static void test_numbered_rows_of_times_and_places_are_told(void **state) {
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "bad");
     assert_contains(result.err, "law.tsv: column 1 numbers the rows, and column 2 grows as a time "
                                 "does: set \"time_column\" to 2");
+    // From 0, where the first column could be times: those are equally far apart, values are not.
+    small_inputs_write(*state, "law.tsv",
+                       "0 0 1 0.01\n1 0.05 0.9 0.01\n2 0.1 0.7 0.01\n3 0.15 0.6 0.01\n", NULL,
+                       NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "bad");
+    assert_contains(result.err, "law.tsv: column 1 numbers the rows, and column 2 grows");
+    small_inputs_write(*state, "run.json", run, "\"vacf\": {\"file\": \"law.tsv\"}",
+                       "\"etd\": {\"file\": \"law.tsv\", \"r_maximum\": 1}");
+    for (int from = 0; from < 2; from++) {
+        small_inputs_write(*state, "law.tsv",
+                           from ? "1 0 1 1\n2 0.05 0.9 0.8\n3 0.1 0.7 0.6\n"
+                                : "0 0 1 1\n1 0.05 0.9 0.8\n2 0.1 0.7 0.6\n",
+                           NULL, NULL);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "bad");
+        assert_contains(result.err, "law.tsv: column 1 numbers the rows, and column 2 grows as a "
+                                    "time does: set \"time_column\" to 2 and \"first_column\" to");
+    }
     small_inputs_write(*state, "places.tsv", "0 1 2 3\n1 2 3 1\n2 3 4 2\n", NULL, NULL);
     small_inputs_write(*state, "scene.json", placed, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "bad");

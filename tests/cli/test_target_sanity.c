@@ -152,6 +152,50 @@ static void test_fit_warns_of_targets_that_hardly_can_be(void **state) {
     }
 }
 
+/// 1 atm in Pa, where the file has bar: 74 times an ideal gas's; coarse water's 9900 bar are 7
+/// times.
+static void test_fit_warns_of_a_pressure_that_no_fluid_has(void **state) {
+    static const char run[] =
+        "{\"units\": \"nm-ps\", \"target\": {\"rdf\": {\"file\": \"water.txt\", " COLUMNS ERRORS
+        "},\n"
+        "    \"pressure\": {\"value\": 101325, \"error\": 100}},\n"
+        "\"scene\": {\"density\": 32.57, \"temperature\": 298, \"particles\": {\"mass\": "
+        "18.015}}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out,
+                    "warning: target.pressure: 101325 bar is 75.6 times the pressure of an ideal "
+                    "gas of this density and temperature, 1340 bar: no fluid has more than some 50 "
+                    "times as much; is it in bar, and not in Pa or another unit?");
+    small_inputs_write(*state, "run.json", run, "101325", "9900");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    assert_null(strstr(result.out, "target.pressure"));
+}
+
+/// Whoever leaves out rows of 0 may leave out more.
+static void test_fit_warns_of_a_table_that_begins_within_its_core(void **state) {
+    static struct run_program_result result;
+    static const char run[] = "{\"target\": {\"rdf\": {\"file\": \"part.tsv\"}}, \"scene\": "
+                              "{\"density\": 0.8, \"temperature\": 1}}\n";
+    link_to("targets/lennard-jones/rdf.tsv", "whole.tsv");
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    char *const whole = temporary_folder_read("whole.tsv");
+    for (int from = 0; from < 2; from++) {
+        const char *const rest = strstr(whole, from ? "\n0.95\t" : "\n0.81\t");
+        assert_non_null(rest);
+        small_inputs_write(*state, "part.tsv", rest + 1, NULL, NULL);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.out,
+                                "warning: target.rdf: its first row, at 0.95 lambda, "
+                                "has g = 0.274: nearer pairs are taken for none") != NULL,
+                         from);
+    }
+    free(whole);
+}
+
 /// Gaussian-core particles have no packing that is too dense, but ten times the density asks for
 /// less than no fluctuations; hard spheres a thousandth of their close packing are a gas.
 static void test_fit_looks_at_densities_of_fluids_without_layers(void **state) {
@@ -446,6 +490,8 @@ int main(void) {
         TEST(test_fit_refuses_targets_and_scenes_that_cannot_be),
         TEST(test_simulate_refuses_units_that_cannot_be),
         TEST(test_fit_warns_of_targets_that_hardly_can_be),
+        TEST(test_fit_warns_of_a_pressure_that_no_fluid_has),
+        TEST(test_fit_warns_of_a_table_that_begins_within_its_core),
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_names_demixing_where_the_integrals_say_so),

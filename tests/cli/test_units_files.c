@@ -288,9 +288,22 @@ static void test_bad_units_are_one_line_with_file_and_key(void **state) {
          "scene.json: particles.mass: -5 is out of range; allowed: above 0 u"},
         {"{" PHYSICAL "\"temperature\": 300, \"box\": [-3, 3, 3], \"particles\": {\"count\": 81}}",
          "scene.json: box[0]: -3 is out of range; allowed: above 0"},
+        {"{" PHYSICAL "\"temperature\": 300, \"box\": [1.9, 3, 3], \"particles\": {\"count\": 81}, "
+         "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 50, \"cutoff\": 1}}",
+         "scene.json: the box is too small: its shortest edge 1.9 nm is below twice the cutoff 1 "
+         "nm"},
         {"{" PHYSICAL "\"temperature\": 300, \"box\": [0.3, 0.3, 0.3], \"particles\": {\"count\": "
          "81, \"mass\": 18}}",
          "scene.json: box: 18 u a bead make 89.7 g/cm^3"},
+        {"{" PHYSICAL "\"temperature\": 300, \"box\": [3, 3, 3], \"particles\": {\"count\": 81, "
+         "\"mass\": 2.99e-26}}",
+         "scene.json: particles.mass: 2.99e-26 u is less than any atom has: masses are "
+         "in u, which is g/mol; 1 kg is 6.02214e+26 u"},
+        {"{" PHYSICAL
+         "\"temperature\": 300, \"box\": [3, 3, 3], \"particles\": {\"types\": {\"A\": "
+         "80, \"B\": 80}, \"mass\": {\"A\": 18, \"B\": 0.032}}}",
+         "scene.json: particles.mass: 0.032 u is less than any atom has: masses are in "
+         "u, which is g/mol; 1 kg/mol is 1000 u"},
         {"{" PHYSICAL "\"temperature\": 300, " BOX
          ", \"conservative\": {\"law\": \"table\", \"file\": \"bad.tsv\"}}",
          "bad.tsv: column 1: \"ps\" is not a unit of the same kind as nm"},
@@ -315,6 +328,30 @@ static void test_bad_units_are_one_line_with_file_and_key(void **state) {
         if (strstr(result.err, bad[k].message) == NULL)
             fail_msg("not \"%s\" but %s", bad[k].message, result.err);
     }
+}
+
+/// Where the program chooses lambda by the density, a law has no length by default: 2.5 lambda of
+/// one density would be another potential at the next.
+static void test_lengths_of_laws_have_no_default_that_follows_the_density(void **state) {
+    static const char scene[] =
+        "{\"units\": \"nm-ps\", \"temperature\": 300, \"box\": [3, 3, 3],\n"
+        "\"particles\": {\"count\": 81, \"mass\": 40}, \"time_step\": 0.001,\n"
+        "\"conservative\": {\"law\": \"lennard-jones\", \"sigma\": 0.34},\n"
+        "\"dissipative\": {\"law\": \"none\"},\n"
+        "\"measure\": {\"equilibration\": 1, \"samples\": 1}}\n";
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_int_equal(run_program_lines(result.err), 1);
+    assert_contains(result.err, "scene.json: conservative.cutoff: missing: expected a number in nm "
+                                "(distance beyond which it is 0); the default, 2.5 lambda, would "
+                                "change with the density");
+    small_inputs_write(*state, "scene.json", scene, "0.34", "0.34, \"cutoff\": 0.85");
+    simulate("scene.json", "out");
+    small_inputs_write(*state, "scene.json", scene, "\"nm-ps\"",
+                       "{\"system\": \"nm-ps\", \"length\": 0.34}");
+    simulate("scene.json", "known"); // lambda is the file's own
+    assert_close(results_number("known/used.json", "conservative.cutoff"), 0.85, 1e-12);
 }
 
 /// Every unit of every field table: in brackets in the third cell of a row of keys.
@@ -369,6 +406,7 @@ int main(void) {
         TEST(test_fits_speak_physical_units),
         TEST(test_a_mass_density_needs_a_mass),
         TEST(test_bad_units_are_one_line_with_file_and_key),
+        TEST(test_lengths_of_laws_have_no_default_that_follows_the_density),
         TEST(test_units_of_all_field_tables_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -20,7 +20,7 @@
 
 extern char **environ;
 
-enum { MAX_WORDS = 32 };
+enum { MAX_WORDS = 128 };
 
 static const double usual_work_limit = 300, longest_idle = 600; // [s]
 

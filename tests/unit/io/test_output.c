@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // syncfs
+
 #include "io/output.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -10,6 +12,21 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+/// Instead of the C library's: how often what is asked to come to the disk.
+static int files_synced, systems_synced;
+
+int fsync(int file) {
+    (void)file;
+    files_synced++;
+    return 0;
+}
+
+int syncfs(int file) {
+    (void)file;
+    systems_synced++;
+    return 0;
+}
 
 static void assert_file_holds(const char *path, const char *expected) {
     char *text = temporary_folder_read(path);
@@ -32,6 +49,29 @@ static void test_output_commit_replaces_the_file_when_all_was_written(void **sta
     assert_no_partial(&output);
     mf_output_abandon(&output);
     assert_file_holds(path, "new\n");
+}
+
+/// Many files, and one that says that they are there: none waits for the disk but the last.
+static void test_output_open_later_leaves_the_disk_to_the_next_file(void **state) {
+    const char *folder = *state;
+    char path[512];
+    struct output output;
+    files_synced = systems_synced = 0;
+    for (int k = 0; k < 5; k++) {
+        snprintf(path, sizeof path, "%s/%d.txt", folder, k);
+        assert_ok(mf_output_open_later(&output, path));
+        fputs("a snapshot\n", output.stream);
+        assert_ok(mf_output_commit(&output));
+        assert_file_holds(path, "a snapshot\n");
+    }
+    assert_int_equal(files_synced + systems_synced, 0);
+    for (int k = 0; k < 2; k++) {
+        snprintf(path, sizeof path, "%s/checkpoint", folder);
+        assert_ok(mf_output_open(&output, path));
+        assert_ok(mf_output_commit(&output));
+        assert_int_equal(systems_synced, 1);
+        assert_int_equal(files_synced, 1 + 2 * k); // its folder; then the file as well
+    }
 }
 
 static void test_output_abandon_keeps_the_old_file_when_called_before_commit(void **state) {
@@ -162,6 +202,7 @@ static void test_output_make_folder_names_the_path_when_a_file_is_in_the_way(voi
 int main(void) {
     const struct CMUnitTest tests[] = {
         IN_FOLDER(test_output_commit_replaces_the_file_when_all_was_written),
+        IN_FOLDER(test_output_open_later_leaves_the_disk_to_the_next_file),
         IN_FOLDER(test_output_abandon_keeps_the_old_file_when_called_before_commit),
         IN_FOLDER(test_output_commit_reports_and_cleans_up_when_the_disk_is_full),
         IN_FOLDER(test_output_open_makes_a_file_of_its_own_when_something_is_in_the_way),

@@ -174,7 +174,7 @@ static void test_killed_run_leaves_a_list_that_is_right(void **state) {
         }
         // The same one does: what was before goes, if it has not gone yet.
         assert_ok(mf_tracked_files_begin(&own, 3));
-        assert_ok(mf_tracked_files_claim("out/rdf.tsv"));
+        assert_ok(mf_tracked_files_claim("out/rdf.tsv", false));
         mf_manifest_clear(&own.list);
         assert_ok(mf_manifest_read(&own.list));
         assert_ok(mf_tracked_files_resume(&own, 3));

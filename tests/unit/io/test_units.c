@@ -213,6 +213,28 @@ static void test_units_measured_has_the_unit_of_the_file(void **state) {
                         "4.000(80) 1/nm^3");
 }
 
+/// Numbers with the mark of a unit: of argon λ is 0.34 nm, T_0 120 K and k_B T_0 0.9977 kJ/mol.
+static void test_units_convert_text_has_numbers_in_those_of_the_file(void **state) {
+    (void)state;
+    static const char marked[] = "an edge of 5" STATUS_LENGTH ", at -1.50e+02" STATUS_TEMPERATURE
+                                 " (limit inf" STATUS_TEMPERATURE "), 12 " STATUS_ENERGY
+                                 ", 3 steps, {\"a\": 2}, cut" STATUS_LENGTH " 7\x1flamb";
+    char text[256];
+    snprintf(text, sizeof text, "%s", marked);
+    mf_units_convert_text(&argon, text, sizeof text);
+    assert_string_equal(text, "an edge of 1.7 nm, at -1.8e+04 K (limit inf K), 12 , 3 steps, "
+                              "{\"a\": 2}, cut 7");
+    snprintf(text, sizeof text, "%s", marked);
+    mf_units_convert_text(NULL, text, sizeof text);
+    assert_string_equal(text, "an edge of 5, at -1.50e+02 (limit inf), 12 , 3 steps, {\"a\": 2}, "
+                              "cut 7");
+    mf_status_fail(STATUS_BAD_INPUT, "%s", "an edge of 5" STATUS_LENGTH);
+    assert_string_equal(mf_status_message(), "an edge of 5");
+    mf_status_prefix(STATUS_BAD_INPUT, "f.json");
+    mf_units_convert_message(&argon, STATUS_BAD_INPUT);
+    assert_string_equal(mf_status_message(), "f.json: an edge of 1.7 nm");
+}
+
 /// A spoken name, read again as the unit of a heading, is one over the factor.
 static void test_units_from_takes_back_what_name_gives(void **state) {
     (void)state;
@@ -307,6 +329,7 @@ int main(void) {
         cmocka_unit_test(test_units_factor_is_1_for_what_no_scene_sets),
         cmocka_unit_test(test_units_name_is_what_a_person_would_write),
         cmocka_unit_test(test_units_measured_has_the_unit_of_the_file),
+        cmocka_unit_test(test_units_convert_text_has_numbers_in_those_of_the_file),
         cmocka_unit_test(test_units_from_takes_back_what_name_gives),
         cmocka_unit_test(test_units_file_value_is_what_was_read),
         TEST(test_units_are_those_of_molecules),

@@ -84,10 +84,30 @@ static void test_closing_calls_success_only_what_agrees_and_is_known(void **stat
     assert_contains(text, "did not succeed");
 }
 
+/// A friction weight has not converged to targets that it does not meet.
+static void test_closing_says_so_where_a_friction_weight_misses_its_targets(void **state) {
+    (void)state;
+    static struct fit_file fit;
+    static double value = 0.5;
+    char reason[INVERSE_REASON_SIZE];
+    struct verification verification = {.distance[TARGET_ETD] = {.rms = 0.02, .noise = 0.01}};
+    fit.problem.targets.target[TARGET_ETD] =
+        (struct target){.count = 1, .value = &value, .weight = 1};
+    assert_false(mf_fit_closing_is_missed(&fit, &verification, reason));
+    fit.problem.unknown[UNKNOWN_OMEGA] =
+        (struct unknown){.wanted = true, .parameters = {.cutoff = 1.5}};
+    assert_true(mf_fit_closing_is_missed(&fit, &verification, reason));
+    assert_contains(reason, "etd by 2 times its statistical error");
+    assert_contains(reason, "another cutoff than that given or chosen, 1.5, which no fit changes");
+    verification.distance[TARGET_ETD].rms = 0.015;
+    assert_false(mf_fit_closing_is_missed(&fit, &verification, reason));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closing_tells_how_well_a_friction_weight_is_known),
         cmocka_unit_test(test_closing_says_so_where_most_of_a_friction_weight_is_noise),
+        cmocka_unit_test(test_closing_says_so_where_a_friction_weight_misses_its_targets),
         cmocka_unit_test(test_closing_calls_success_only_what_agrees_and_is_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
