@@ -28,16 +28,9 @@ struct fit_constraints {
 
 struct fit_file;
 
-/// Those among the groups of a fit that was read and that looks for what has a target.
-void mf_fit_constraints_find(const struct fit_file *read, struct fit_constraints *constraints);
+/// Find those among the groups of a fit that was read and that looks for what has a target.
+void mf_fit_constraints_find(struct fit_file *fit);
 
-/// Put their laws into the scene of the document that is to be read, and take their targets out.
-/// Fails: NO_MEMORY. Tested: cli/test_measure_own_targets.
-enum status mf_fit_constraints_write(const struct fit_constraints *constraints,
-                                     const struct fit_file *read,
-                                     const struct json_object *root) MUST_USE;
-
-/// A line for each, as the choices of a fit.
-struct fit_choices;
-void mf_fit_constraints_print(const struct fit_constraints *constraints,
-                              const struct fit_file *read, struct fit_choices *choices);
+/// Give their groups the laws, take their targets out, and keep a line for each as the choices of a
+/// fit. Fails: NO_MEMORY. Tested: cli/test_measure_own_targets.
+enum status mf_fit_constraints_apply(struct fit_file *fit) MUST_USE;

@@ -20,11 +20,18 @@ extern const struct field mf_fit_core_fields[];
 /// What "unknowns" says of one of them.
 struct fit_unknown {
     bool wanted;
-    struct unknown_parameters parameters;
-    struct scene_law start; ///< without a curve: as mf_unknowns_start says
-    struct scene_law truth; ///< the true curves where they are known
-    double *base;           ///< of struct unknown
+    const struct field *fields;           ///< of `said`
+    struct unknown_parameters said;       ///< by the file, the family of friction, or chosen
+    uint64_t given;                       ///< which fields that are (mf_fields_bit)
+    struct unknown_parameters parameters; ///< what follows from it
+    struct scene_law start;               ///< without a curve: as mf_unknowns_start says
+    struct scene_law truth;               ///< the true curves where they are known
+    double *base;                         ///< of struct unknown
 };
+
+static inline bool fit_unknown_says(const struct fit_unknown *unknown, const char *key) {
+    return unknown->given & mf_fields_bit(unknown->fields, key);
+}
 
 /// What the program chose because the file did not say it, a line each with its reason.
 enum { FIT_MAX_CHOICES = 20, FIT_CHOICE_SIZE = 256 };
@@ -42,18 +49,23 @@ struct fit_file {
     struct fit_file *other;         ///< shape [others], each whole but for its own others
     const struct inverse_problem *problems[INVERSE_MAX_STATES]; ///< of all states
     struct heading heading;
+    int friction; ///< enum fit_friction
     struct fit_choices choices;
     struct fit_constraints constraints; ///< that the laws of the scene have come from
     struct target_files files;
     struct scene scene;
+    const struct integrator *integrator; ///< that was chosen for the scene; or NULL
+    bool says_unknowns;                  ///< the file does
     struct fit_unknown unknown[UNKNOWNS];
     struct bonded_shape shape[BONDED_KINDS][MOLECULES_MAX_GROUPS]; ///< of groups to be found
     struct inverse_number number[INVERSE_MAX_NUMBERS];             ///< that are to be found
     size_t numbers;
     struct fit_core core;
+    uint64_t core_given; ///< which fields the file says
     const struct inverse_method *method;
     void *method_parameters;
     struct verify_parameters verification;
+    uint64_t verification_given;
     struct inverse_problem problem;
     struct input_files inputs;
 };

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "defaults/fit_friction.h"
 
-#include "defaults/fit_choice.h"
-
-#include <string.h>
+#include <math.h>
 
 static const char *const families[] = {"free", "exportable", "linear", NULL};
 
@@ -13,47 +11,20 @@ const struct field mf_fit_friction_fields[] = {
     FIELD_END,
 };
 
-static const char path[] = "unknowns.omega", fixed[] = "unknowns.omega.fixed";
-
-static enum status put_number(const struct json_object *root, const char *where, const char *key,
-                              double value) {
-    return mf_fit_choice_lacks(root, where, key)
-               ? mf_fit_choice_give_number(root, where, key, value)
-               : STATUS_OK;
-}
-
-/// Without a curve of the file's own, or with the same.
-static bool has_other_curve(const struct json_object *root) {
-    struct json_object omega = mf_fit_choice_object(root, path);
-    const char *curve =
-        mf_json_has(&omega, "curve") ? mf_json_choice(&omega, "curve", NULL, "") : NULL;
-    if (curve == NULL || strcmp(curve, "power") == 0)
+bool mf_fit_friction_take(struct fit_unknown *omega, enum fit_friction family) {
+    struct unknown_parameters *said = &omega->said;
+    if (family == FIT_FRICTION_FREE)
+        return true;
+    if (fit_unknown_says(omega, "curve") && said->shape != INVERSE_CURVE_POWER)
         return false;
-    mf_json_fault(&omega, "curve",
-                  "\"%s\" is not the power law that \"friction\" asks for: leave "
-                  "one of them out",
-                  curve);
+    said->shape = INVERSE_CURVE_POWER;
+    if (!fit_unknown_says(omega, "inner_cutoff"))
+        said->inner_cutoff = 0;
+    omega->given |=
+        mf_fields_bit(omega->fields, "curve") | mf_fields_bit(omega->fields, "inner_cutoff");
+    if (isnan(said->fixed[INVERSE_INNER_CUTOFF]))
+        said->fixed[INVERSE_INNER_CUTOFF] = 0;
+    if (family == FIT_FRICTION_LINEAR && isnan(said->fixed[INVERSE_EXPONENT]))
+        said->fixed[INVERSE_EXPONENT] = 1;
     return true;
-}
-
-enum status mf_fit_friction_put(struct json_object *root, bool *changed) {
-    struct json_object own = *root; // looks, and asks for nothing
-    int family;
-    *changed = false;
-    mf_json_fields(&own, mf_fit_friction_fields, &family);
-    if (family == FIT_FRICTION_FREE || !mf_json_has(&own, "unknowns"))
-        return STATUS_OK;
-    const struct json_object unknowns = mf_fit_choice_object(root, "unknowns");
-    if (!mf_json_is_object(&unknowns, "omega")) {
-        mf_json_fault(&own, "friction", "there is no \"omega\" among the \"unknowns\"");
-        return STATUS_OK;
-    }
-    if (has_other_curve(root))
-        return STATUS_OK;
-    *changed = true;
-    if (mf_fit_choice_lacks(root, path, "curve"))
-        TRY(mf_fit_choice_give_text(root, path, "curve", "power"));
-    TRY(put_number(root, path, "inner_cutoff", 0));
-    TRY(put_number(root, fixed, "inner_cutoff", 0));
-    return family == FIT_FRICTION_LINEAR ? put_number(root, fixed, "exponent", 1) : STATUS_OK;
 }

@@ -14,9 +14,10 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
                                 struct inverse_number number[INVERSE_MAX_NUMBERS],
                                 size_t *count) MUST_USE;
 
+/// Begin with what the scene has, or in the middle of the range, where the file does not say with
+/// what. Fails: NO_MEMORY.
+enum status mf_fit_numbers_complete(const struct scene *scene, struct inverse_number *number,
+                                    size_t count) MUST_USE;
+
 /// Lend a problem the laws of the scene that numbers may belong to.
 void mf_fit_numbers_lend(const struct scene *scene, struct inverse_problem *problem);
-
-/// Write them back, with the values that they begin with.
-void mf_fit_numbers_write(const struct inverse_number *number, size_t count,
-                          struct json_writer *writer);

@@ -22,4 +22,8 @@ void mf_fit_unknowns_groups(struct json_object *root, struct json_object *scene,
 /// Read "unknowns" of a run file whose scene is read. Faults go to the document. Fails: NO_MEMORY.
 enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root) MUST_USE;
 
+/// Let follow what does from what was chosen after they were read. Faults go to the document.
+/// Fails: NO_MEMORY.
+enum status mf_fit_unknowns_complete(struct fit_file *fit, struct json_object *root) MUST_USE;
+
 void mf_fit_unknowns_write(const struct fit_file *fit, struct json_writer *writer);

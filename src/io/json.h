@@ -107,7 +107,8 @@ int mf_json_numbers(const struct json_object *object, const char *key, double *v
 /// the folder of the document's file unless absolute. An absent object gives the defaults and no
 /// faults: that it is missing was mf_json_child's to say. null, as mf_json_write_number writes what
 /// is not known, is allowed for numbers whose default is NAN.
-void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
+/// Returns the fields that the object has, as bits of mf_fields_bit.
+uint64_t mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
 
 /// Read a required text such as the name of a law: NULL (and a fault) if absent or not a text.
 /// `known` lists the allowed values, NULL-terminated, or is NULL; others are a fault that names

@@ -192,10 +192,12 @@ static void read_field(struct json_object *object, const struct field *field, co
     }
 }
 
-void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters) {
+uint64_t mf_json_fields(struct json_object *object, const struct field *fields, void *parameters) {
+    uint64_t given = 0, bit = 1;
     mf_fields_set_defaults(fields, parameters);
-    for (const struct field *field = fields; field->name; field++) {
+    for (const struct field *field = fields; field->name; field++, bit <<= 1) {
         const cJSON *item = mf_json_get(object, field->name);
+        given |= item ? bit : 0;
         // A number that is not known is written as null.
         if (cJSON_IsNull(item) && field->type == FIELD_NUMBER && isnan(field->initial))
             continue;
@@ -205,6 +207,7 @@ void mf_json_fields(struct json_object *object, const struct field *fields, void
             mf_json_fault(object, field->name, "missing: expected %s (%s)",
                           expected_name[field->type], field->help ? field->help : field->name);
     }
+    return given;
 }
 
 static void fault_missing_choice(struct json_object *object, const char *key,

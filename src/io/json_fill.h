@@ -19,8 +19,3 @@ struct json_filling {
 /// cli/test_fit_target.
 enum status mf_json_fill(const char *file, const char *object, const struct json_filling *filling,
                          size_t count, char **text) MUST_USE;
-
-/// Take the member `key` out of the object `parent.child` of `root`, and the child, too, if nothing
-/// else is in it. What is not there is fine.
-void mf_json_drop(const struct json_object *root, const char *parent, const char *child,
-                  const char *key);

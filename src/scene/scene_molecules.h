@@ -23,7 +23,7 @@ struct scene_fitted {
     int count[BONDED_KINDS];
     char name[BONDED_KINDS][MOLECULES_MAX_GROUPS][TOPOLOGY_NAME_SIZE];
     bool given;         ///< by "unknowns"; else what has a target is fitted
-    bool count_follows; ///< a count of beads that the scene does not say is chosen later
+    bool count_follows; ///< a count of beads that the scene does not say may be chosen later
     struct json_object from[BONDED_KINDS]; ///< the objects that name them, of those that there are
 };
 

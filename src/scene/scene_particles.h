@@ -9,6 +9,9 @@
 enum status mf_scene_particles_read(struct scene *scene, struct json_object *object,
                                     const struct scene_fitted *fitted) MUST_USE;
 
+/// Composition and box of a count that was chosen after it; a fault if none was.
+void mf_scene_particles_complete(struct scene *scene, struct json_object *object);
+
 /// Write the member.
 void mf_scene_particles_write(const struct scene *scene, struct json_writer *writer);
 
