@@ -236,7 +236,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
 
 /// Which state of which file is read.
 struct reading {
-    const char *file;
+    const char *file, *text;
     const struct run_options *options;
     size_t state;
     const struct fit_file *leader; ///< the first state, in whose units and range the others are
@@ -272,6 +272,8 @@ static enum status complete(struct fit_file *fit, struct json_object *root) {
 
 static enum status read_state(struct fit_file *fit, struct reading *reading) {
     struct json_document *document = reading->document;
+    for (size_t k = 0; k < reading->options->word_count; k++)
+        TRY(mf_json_add(document, &reading->options->words[k]));
     TRY(mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states));
     struct json_object root = mf_json_root(document);
     TRY(mf_heading_check_run(&root, reading->file));
@@ -288,8 +290,7 @@ static enum status read_state(struct fit_file *fit, struct reading *reading) {
 }
 
 static enum status parse_state(struct fit_file *fit, struct reading *reading) {
-    *fit = (struct fit_file){0};
-    TRY(mf_json_open(&reading->document, reading->file));
+    TRY(mf_json_open_text(&reading->document, reading->file, reading->text));
     return mf_json_close(reading->document, read_state(fit, reading));
 }
 
@@ -300,7 +301,9 @@ static enum status parse_others(struct fit_file *fit, const struct reading *firs
     TRY_ARRAY(fit->other, first->states - 1);
     while (fit->others < first->states - 1) {
         struct fit_file *other = &fit->other[fit->others++];
-        struct reading reading = {first->file, first->options, fit->others, fit, 0, NULL};
+        struct reading reading = *first;
+        reading.state = fit->others;
+        reading.leader = fit;
         TRY(mf_fit_states_mark(other, parse_state(other, &reading)));
         for (size_t k = 0; k < other->inputs.count; k++)
             TRY(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
@@ -308,9 +311,13 @@ static enum status parse_others(struct fit_file *fit, const struct reading *firs
     return STATUS_OK;
 }
 
-static enum status parse(struct fit_file *fit, const char *file,
-                         const struct run_options *options) {
-    struct reading reading = {file, options, 0, NULL, 0, NULL};
+enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
+                              const struct run_options *options) {
+    *fit = (struct fit_file){0};
+    OWNED char *text = NULL;
+    size_t length;
+    TRY(mf_text_file_read(file, &text, &length));
+    struct reading reading = {.file = file, .text = text, .options = options};
     TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
     TRY(parse_others(fit, &reading));
     TRY(mf_fit_states_widen(fit, file));
@@ -318,14 +325,6 @@ static enum status parse(struct fit_file *fit, const char *file,
         state_problem(mf_fit_states_at(fit, s), options);
     mf_fit_states_link(fit);
     return STATUS_OK;
-}
-
-enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
-                              const struct run_options *options) {
-    mf_text_file_keep();
-    const enum status status = parse(fit, file, options);
-    mf_text_file_forget();
-    return status;
 }
 
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,

@@ -171,6 +171,23 @@ enum status mf_json_take_variant(struct json_document *document, const char *key
     return status;
 }
 
+enum status mf_json_add(struct json_document *document, const struct json_word *word) {
+    cJSON *root = document->root, *place = root;
+    if (word->object && !cJSON_HasObjectItem(root, word->object))
+        cJSON_AddObjectToObject(root, word->object);
+    if (word->object)
+        place = cJSON_GetObjectItemCaseSensitive(root, word->object);
+    if (!cJSON_IsObject(place)) // its reader says what should stand there
+        return STATUS_OK;
+    if (cJSON_GetObjectItemCaseSensitive(place, word->key))
+        return mf_status_fail(STATUS_BAD_INPUT, "--%s: %s has %s%s%s", word->key, document->file,
+                              word->object ? word->object : "", word->object ? "." : "", word->key);
+    return (word->text ? cJSON_AddStringToObject(place, word->key, word->text)
+                       : cJSON_AddNumberToObject(place, word->key, word->value))
+               ? STATUS_OK
+               : STATUS_NO_MEMORY;
+}
+
 struct json_object mf_json_root(struct json_document *document) {
     struct json_object root = view(document, document->root);
     if (!cJSON_IsObject(document->root)) {

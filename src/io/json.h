@@ -53,6 +53,18 @@ void mf_json_set_units(struct json_document *document, const struct units *units
 /// In which units the numbers of the object are.
 const struct units *mf_json_units(const struct json_object *object);
 
+/// What the command line says of a file.
+struct json_word {
+    const char *object; ///< it belongs into, which is made if it is missing; NULL: the root
+    const char *key;
+    double value;
+    const char *text; ///< in place of the number; NULL: the number
+};
+
+/// Put a word into the document, before its root is viewed. Fails: NO_MEMORY; BAD_INPUT if the file
+/// says it, too. Tested: cli/test_fit_target.
+enum status mf_json_add(struct json_document *document, const struct json_word *word) MUST_USE;
+
 /// Make the document what member number n of its object `key` makes of it: that object goes, and
 /// the member is merged into the rest (RFC 7396, JSON Merge Patch). Before its root is viewed.
 /// Fails: NO_MEMORY; BAD_INPUT if the member is no object. Tested: test_json.

@@ -81,52 +81,11 @@ void mf_text_file_set_memory_files(const struct memory_file *memory_files, size_
     memory_file_count = count;
 }
 
-/// Texts that were read from files since mf_text_file_keep.
-static _Thread_local struct kept {
-    struct kept *next;
-    char *text, *name; ///< the name in the memory of the text
-} * kept;
-static _Thread_local int keeping; ///< how many do
-
 static const char *find_memory_file(const char *file) {
     for (size_t k = 0; k < memory_file_count; k++)
         if (strcmp(memory_file_list[k].name, file) == 0)
             return memory_file_list[k].text;
-    for (const struct kept *k = kept; k; k = k->next)
-        if (strcmp(k->name, file) == 0)
-            return k->text;
     return NULL;
-}
-
-void mf_text_file_keep(void) {
-    keeping++;
-}
-
-void mf_text_file_forget(void) {
-    if (--keeping > 0)
-        return;
-    while (kept) {
-        struct kept *first = kept;
-        kept = first->next;
-        mf_memory_free(first->text);
-        mf_memory_free(first);
-    }
-}
-
-static enum status keep(const char *file, const char *text, size_t length) {
-    if (keeping == 0)
-        return STATUS_OK;
-    OWNED struct kept *own = mf_memory_zeroed(1, sizeof *own);
-    char *copy = mf_memory_zeroed(length + strlen(file) + 2, 1);
-    if (own == NULL || copy == NULL) {
-        mf_memory_free(copy);
-        return STATUS_NO_MEMORY;
-    }
-    memcpy(copy, text, length + 1);
-    *own = (struct kept){kept, copy, strcpy(copy + length + 1, file)};
-    kept = own;
-    own = NULL;
-    return STATUS_OK;
 }
 
 static enum status copy_memory_file(const char *file, const char *memory_files, char **text,
@@ -156,7 +115,6 @@ enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     drop_byte_order_mark(*text, length);
     CHECK(check_is_text(file, *text, *length));
     end_lines(*text, *length);
-    CHECK(keep(file, *text, *length));
 done:
     fclose(stream);
     if (status != STATUS_OK) {

@@ -17,11 +17,6 @@
 /// NUL byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
 enum status mf_text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
-/// Between these calls, which may be nested, mf_text_file_read of this thread opens each file once:
-/// what is read in several passes is the same in all, and may be a pipe. Tested: test_run_files.
-void mf_text_file_keep(void);
-void mf_text_file_forget(void);
-
 /// An in-memory file.
 struct memory_file {
     const char *name; ///< of the file, exactly as the reader will ask for it
