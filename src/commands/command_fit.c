@@ -105,7 +105,7 @@ static enum status find_words(const struct command_line *line, struct json_word 
 static enum status run_rdf(const char *file, const char *rdf, const struct command_line *line,
                            const struct json_word *words, size_t count) {
     static const char text[] = "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}}";
-    const struct memory_file unwritten = {file, text};
+    const struct memory_file unwritten = {.name = file, .text = text};
     if (access(rdf, R_OK) != 0)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "--target: %s not found, nor rdf.tsv for use with --density", file);

@@ -272,8 +272,7 @@ static enum status complete(struct fit_file *fit, struct json_object *root) {
 
 static enum status read_state(struct fit_file *fit, struct reading *reading) {
     struct json_document *document = reading->document;
-    for (size_t k = 0; k < reading->options->word_count; k++)
-        TRY(mf_json_add(document, &reading->options->words[k]));
+    TRY(mf_json_add(document, reading->options->words, reading->options->word_count));
     TRY(mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states));
     struct json_object root = mf_json_root(document);
     TRY(mf_heading_check_run(&root, reading->file));

@@ -53,17 +53,22 @@ void mf_json_set_units(struct json_document *document, const struct units *units
 /// In which units the numbers of the object are.
 const struct units *mf_json_units(const struct json_object *object);
 
-/// What the command line says of a file.
+/// What is said beside a file, by the command line or by a caller of the library: one member of one
+/// of its objects.
 struct json_word {
-    const char *object; ///< it belongs into, which is made if it is missing; NULL: the root
+    const char *object; ///< path, "scene.particles", of what is made if it is missing; NULL: root
     const char *key;
+    const char *text, *json; ///< a text, or a value in JSON; both NULL: numbers
+    size_t count;            ///< of `values`; 0: it is the number `value`
     double value;
-    const char *text; ///< in place of the number; NULL: the number
+    const double *values;
 };
 
-/// Put a word into the document, before its root is viewed. Fails: NO_MEMORY; BAD_INPUT if the file
-/// says it, too. Tested: cli/test_fit_target.
-enum status mf_json_add(struct json_document *document, const struct json_word *word) MUST_USE;
+/// Put words into the document, before its root is viewed. Fails: NO_MEMORY; BAD_INPUT if the file
+/// says one of them, too, or if there is no value in the JSON. Tested: cli/test_fit_target,
+/// test_library.
+enum status mf_json_add(struct json_document *document, const struct json_word *words,
+                        size_t count) MUST_USE;
 
 /// Make the document what member number n of its object `key` makes of it: that object goes, and
 /// the member is merged into the rest (RFC 7396, JSON Merge Patch). Before its root is viewed.

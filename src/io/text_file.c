@@ -81,19 +81,18 @@ void mf_text_file_set_memory_files(const struct memory_file *memory_files, size_
     memory_file_count = count;
 }
 
-static const char *find_memory_file(const char *file) {
+const struct memory_file *mf_text_file_find_memory_file(const char *name) {
     for (size_t k = 0; k < memory_file_count; k++)
-        if (strcmp(memory_file_list[k].name, file) == 0)
-            return memory_file_list[k].text;
+        if (strcmp(memory_file_list[k].name, name) == 0)
+            return &memory_file_list[k];
     return NULL;
 }
 
-static enum status copy_memory_file(const char *file, const char *memory_files, char **text,
-                                    size_t *length) {
-    const size_t bytes = strlen(memory_files);
-    TRY(check_is_text(file, memory_files, bytes));
+static enum status copy_text(const char *file, const char *from, char **text, size_t *length) {
+    const size_t bytes = strlen(from);
+    TRY(check_is_text(file, from, bytes));
     TRY_ARRAY(*text, bytes + 1);
-    memcpy(*text, memory_files, bytes + 1);
+    memcpy(*text, from, bytes + 1);
     end_lines(*text, bytes);
     *length = bytes;
     return STATUS_OK;
@@ -103,9 +102,9 @@ enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     enum status status = STATUS_OK;
     *text = NULL;
     *length = 0;
-    const char *memory_files = find_memory_file(file);
-    if (memory_files)
-        return copy_memory_file(file, memory_files, text, length);
+    const struct memory_file *in_memory = mf_text_file_find_memory_file(file);
+    if (in_memory && in_memory->text)
+        return copy_text(file, in_memory->text, text, length);
     FILE *stream;
     struct stat about;
     TRY(mf_input_open(&stream, file));
