@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "defaults/fit_base.h"
+#include "defaults/fit_unknowns.h"
 
 #include "base/memory.h"
 #include "inversion/inversion.h"

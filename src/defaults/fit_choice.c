@@ -9,11 +9,12 @@
 #include <string.h>
 
 void mf_fit_choice_note(const struct fit_choice *c, const char *format, ...) {
+    struct fit_choices *const choices = &c->fit->choices;
     va_list arguments;
-    if (c->choices->count == FIT_MAX_CHOICES)
+    if (choices->count == FIT_MAX_CHOICES)
         return;
     va_start(arguments, format);
-    vsnprintf(c->choices->line[c->choices->count++], FIT_CHOICE_SIZE, format, arguments);
+    vsnprintf(choices->line[choices->count++], FIT_CHOICE_SIZE, format, arguments);
     va_end(arguments);
 }
 

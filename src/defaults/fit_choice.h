@@ -10,7 +10,6 @@
 struct fit_choice {
     struct fit_file *fit;
     const struct fit_file *leader;
-    struct fit_choices *choices;
     const struct fit_scales_rdf *rdf;
     struct fit_scales scales;
     int dimensions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "defaults/fit_constraints.h"
+#include "defaults/fit_defaults.h"
 
 #include "defaults/fit_choice.h"
 #include "problem/bonded_grid.h"
@@ -81,7 +81,7 @@ static enum status give_law(const struct fit_choice *choice,
 }
 
 enum status mf_fit_constraints_apply(struct fit_file *fit) {
-    const struct fit_choice choice = {.fit = fit, .choices = &fit->choices};
+    const struct fit_choice choice = {.fit = fit};
     const struct molecules *molecules = &fit->scene.molecules.molecules;
     for (size_t n = 0; n < fit->constraints.count; n++) {
         const struct fit_constraint *constraint = &fit->constraints.of[n];

@@ -2,7 +2,7 @@
 #include "defaults/fit_defaults.h"
 
 #include "defaults/fit_choice.h"
-#include "defaults/fit_friction.h"
+#include "defaults/fit_unknowns.h"
 #include "inversion/inversions.h"
 
 #include <math.h>
@@ -355,7 +355,6 @@ enum status mf_fit_defaults_choose(struct fit_file *fit, const struct fit_file *
     struct fit_scales_rdf rdf = {0};
     struct fit_choice c = {.fit = fit,
                            .leader = leader,
-                           .choices = &fit->choices,
                            .rdf = &rdf,
                            .joined = 1,
                            .dimensions = setup->box.dimensions,

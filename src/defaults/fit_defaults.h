@@ -18,3 +18,10 @@
 /// @param[in] leader  the first state, whose range of g(r) the others have; NULL without
 /// Fails: NO_MEMORY. Tested: test_fit_defaults, test_default_fits.
 enum status mf_fit_defaults_choose(struct fit_file *fit, const struct fit_file *leader) MUST_USE;
+
+/// Find those among the groups of a fit that was read and that looks for what has a target.
+void mf_fit_constraints_find(struct fit_file *fit);
+
+/// Give their groups the laws, take their targets out, and keep a line for each as the choices of a
+/// fit. Fails: NO_MEMORY. Tested: cli/test_measure_own_targets.
+enum status mf_fit_constraints_apply(struct fit_file *fit) MUST_USE;

@@ -4,11 +4,8 @@
 #include "base/digest.h"
 #include "base/memory.h"
 #include "base/names.h"
-#include "defaults/fit_base.h"
-#include "defaults/fit_check.h"
 #include "defaults/fit_defaults.h"
 #include "defaults/fit_densities.h"
-#include "defaults/fit_friction.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
 #include "defaults/methods.h"
@@ -326,15 +323,19 @@ enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
     return STATUS_OK;
 }
 
-enum status mf_fit_file_read(struct fit_file *fit, const char *file,
-                             const struct run_options *options) {
-    TRY(mf_fit_file_parse(fit, file, options));
+enum status mf_fit_file_check(struct fit_file *fit, const char *file) {
     TRY(mf_fit_states_check(fit, file));
     for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
         struct fit_file *state = mf_fit_states_at(fit, s);
         TRY(mf_fit_states_mark(state, mf_fit_check(state, file)));
     }
     return mf_fit_base_find(fit);
+}
+
+enum status mf_fit_file_read(struct fit_file *fit, const char *file,
+                             const struct run_options *options) {
+    TRY(mf_fit_file_parse(fit, file, options));
+    return mf_fit_file_check(fit, file);
 }
 
 void mf_fit_file_clear(struct fit_file *fit) {

@@ -2,9 +2,8 @@
 /// @file A run file of `mesofit fit`: target, scene, method.
 #pragma once
 
+#include "observe/bonded_distribution.h"
 #include "problem/verify.h"
-#include "defaults/fit_constraints.h"
-#include "defaults/fit_numbers.h"
 #include "scene/heading.h"
 #include "scene/run_options.h"
 #include "scene/scene.h"
@@ -38,6 +37,26 @@ enum { FIT_MAX_CHOICES = 20, FIT_CHOICE_SIZE = 256 };
 struct fit_choices {
     size_t count;
     char line[FIT_MAX_CHOICES][FIT_CHOICE_SIZE];
+};
+
+/// Bonds and angles whose distribution is so narrow that it is a constraint, or stands in so few
+/// rows that it shows nothing but a width: a fit takes a harmonic law for them instead of looking
+/// for one. The law is as wide as the target, but not narrower than what a time step can follow
+/// (mf_bonded_distribution_narrow). As a constraint is not met to its width, its target is left
+/// out.
+enum { FIT_MAX_CONSTRAINTS = 2 * MOLECULES_MAX_GROUPS };
+
+struct fit_constraint {
+    int order;
+    char name[TOPOLOGY_NAME_SIZE];
+    struct bonded_moments moments;
+    double deviation; ///< of the law
+    double k;         ///< [k_B T_0/λ²] or [k_B T_0/rad²]
+};
+
+struct fit_constraints {
+    size_t count;
+    struct fit_constraint of[FIT_MAX_CONSTRAINTS];
 };
 
 enum { FIT_STATE_NAME_SIZE = 64 };
@@ -74,6 +93,13 @@ struct fit_file {
 /// NO_MEMORY. Tested: tests/fuzz.
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
                               const struct run_options *options) MUST_USE;
+
+/// Check how the parts of one state fit together, by beginning a simulation; `file` is named in
+/// messages. Fails: BAD_INPUT; NO_MEMORY. Tested: test_bad_targets, test_fit_numbers.
+enum status mf_fit_check(const struct fit_file *fit, const char *file) MUST_USE;
+
+/// Check all that was read, and find the bases of unknowns. Fails: BAD_INPUT, NO_MEMORY.
+enum status mf_fit_file_check(struct fit_file *fit, const char *file) MUST_USE;
 
 /// Read a run file and check it. Fails: BAD_INPUT with all faults; IO; NO_MEMORY.
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,

@@ -5,7 +5,6 @@
 #include "base/nearest.h"
 #include "base/visible.h"
 #include "io/json_document.h"
-#include "io/json_parse.h"
 #include "io/output.h"
 #include "io/text_file.h"
 

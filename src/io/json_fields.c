@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/nearest.h"
 #include "io/json_document.h"
-#include "io/json_parse.h"
 #include "io/json_list.h"
 
 #include <cJSON.h>

@@ -2,7 +2,7 @@
 #include "io/json_list.h"
 
 #include "base/nearest.h"
-#include "io/json_parse.h"
+#include "io/json_document.h"
 
 #include <cJSON.h>
 

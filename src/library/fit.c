@@ -4,8 +4,7 @@
 #include "problem/parametrisation.h"
 #include "base/memory.h"
 #include "base/status.h"
-#include "defaults/fit_base.h"
-#include "defaults/fit_check.h"
+#include "defaults/fit_unknowns.h"
 #include "library/guard.h"
 #include "library/memory_files.h"
 #include "library/scene_words.h"
@@ -200,8 +199,7 @@ static enum status open_run(struct mesofit_fit **made, const char *file,
                              file));
     if (own)
         CHECK(add_own_laws(fit, own));
-    CHECK(mf_fit_check(&fit->file, file));
-    CHECK(mf_fit_base_find(&fit->file));
+    CHECK(mf_fit_file_check(&fit->file, file));
     CHECK(begin(fit));
 done:
     if (status != STATUS_OK) {

@@ -3,8 +3,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
-#include "scene/scene_dynamics.h"
-#include "scene/scene_particles.h"
+#include "scene/scene_parts.h"
 
 #include <math.h>
 

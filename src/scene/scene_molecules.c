@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "base/names.h"
-#include "scene/scene_topology.h"
 #include "io/json_list.h"
 #include "observe/bonded_distribution.h"
 

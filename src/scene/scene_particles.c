@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/scene_particles.h"
+#include "scene/scene_parts.h"
 
 #include "base/digest.h"
 #include "base/memory.h"
 #include "base/names.h"
-#include "scene/scene_attributes.h"
-#include "scene/scene_coordinates.h"
 #include "io/data_table.h"
 #include "trajectory/snapshot.h"
 
