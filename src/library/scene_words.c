@@ -4,6 +4,7 @@
 #include "curves/table.h"
 
 #include <math.h>
+#include <string.h>
 
 struct mesofit_scene mesofit_scene_default(void) {
     return (struct mesofit_scene){.box = {10, 10, 10},
@@ -29,18 +30,17 @@ size_t mf_scene_words(const struct mesofit_scene *scene, bool of_fit,
     // The words lack a friction weight of the caller's own, by which their reader would choose.
     const char *integrator =
         scene->integrator || scene->dissipative.value == NULL ? scene->integrator : mf_aboba.name;
-    size_t count = 0;
-    words[count++] = (struct json_word){.key = "seed", .value = (double)scene->seed};
-    words[count++] = (struct json_word){.object = top, .key = "dimensions", .value = dimensions};
-    words[count++] = (struct json_word){
-        .object = top, .key = "box", .count = (size_t)dimensions, .values = scene->box};
-    words[count++] =
-        (struct json_word){.object = top, .key = "temperature", .value = scene->temperature};
-    words[count++] =
-        (struct json_word){.object = top, .key = "time_step", .value = scene->time_step};
-    words[count++] = (struct json_word){.object = of_fit ? "scene.particles" : "particles",
-                                        .key = "count",
-                                        .value = (double)scene->particles};
+    const struct json_word always[] = {
+        {.key = "seed", .value = (double)scene->seed},
+        {.object = top, .key = "dimensions", .value = dimensions},
+        {.object = top, .key = "box", .count = (size_t)dimensions, .values = scene->box},
+        {.object = top, .key = "temperature", .value = scene->temperature},
+        {.object = top, .key = "time_step", .value = scene->time_step},
+        {.object = of_fit ? "scene.particles" : "particles",
+         .key = "count",
+         .value = (double)scene->particles}};
+    size_t count = sizeof always / sizeof *always;
+    memcpy(words, always, sizeof always);
     count += find_law(&scene->conservative, top, "conservative", &words[count]);
     count += find_law(&scene->dissipative, top, "dissipative", &words[count]);
     if (integrator)

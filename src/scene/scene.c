@@ -160,6 +160,51 @@ static void check_units(const struct scene *scene, struct json_object *object) {
             mass, atomic_mass, density);
 }
 
+/// A vector has a number for each axis: one too many would act on nothing, one too few leave an
+/// axis free.
+static void check_vectors(struct json_object *object, const struct field *fields, int dimensions) {
+    for (const struct field *field = fields; field->name; field++) {
+        const int count = mf_json_count(object, field->name);
+        if (field->type == FIELD_LENGTHS && (count == 2 || count == 3) && count != dimensions)
+            mf_json_fault(object, field->name, "has %d numbers, but the scene has %d dimensions",
+                          count, dimensions);
+    }
+}
+
+static enum status read_interaction(struct scene_interactions *interactions,
+                                    struct json_object *object, const struct interaction *kind) {
+    struct json_object own = mf_json_child(object, kind->name, false);
+    if (own.item == NULL)
+        return STATUS_OK;
+    void *parameters = mf_memory_zeroed(1, kind->parameters_size);
+    if (parameters == NULL)
+        return STATUS_NO_MEMORY;
+    mf_json_fields(&own, kind->fields, parameters);
+    check_vectors(&own, kind->fields, interactions->dimensions);
+    if (kind->oriented && interactions->dimensions != 2)
+        mf_json_fault(object, kind->name, "orientations are of two dimensions, not %d",
+                      interactions->dimensions);
+    mf_json_finish(&own);
+    interactions->parameters[interactions->count] = parameters;
+    interactions->choice[interactions->count++] = (struct interaction_choice){kind, parameters};
+    return STATUS_OK;
+}
+
+/// In the order of mf_interaction_list.
+static enum status read_interactions(struct scene_interactions *interactions,
+                                     struct json_object *parent, struct simulation_setup *setup) {
+    struct json_object object = mf_json_child(parent, "interactions", false);
+    if (object.item == NULL)
+        return STATUS_OK;
+    interactions->dimensions = setup->box.dimensions;
+    for (size_t k = 0; mf_interaction_list[k]; k++)
+        TRY(read_interaction(interactions, &object, mf_interaction_list[k]));
+    mf_json_finish(&object);
+    memcpy(setup->interaction, interactions->choice, sizeof interactions->choice);
+    setup->interactions = interactions->count;
+    return STATUS_OK;
+}
+
 /// Molecules act, if there are any and the box is large enough for them.
 static void enter_molecules(struct scene *scene, struct json_object *object) {
     const struct molecules *molecules = &scene->molecules.molecules;
@@ -219,7 +264,7 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
     TRY(mf_scene_memory_read(&scene->memory, object, &scene->setup.composition, &scene->units,
                              unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
-    TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
+    TRY(read_interactions(&scene->interactions, object, &scene->setup));
     TRY(mf_scene_many_body_read(&scene->many_body, object, &scene->setup, fitted != NULL));
     enter_molecules(scene, object);
     TRY(mf_scene_dynamics_read(scene, object));
@@ -237,6 +282,12 @@ enum status mf_scene_complete(struct scene *scene, struct json_object *object,
     return mf_scene_dynamics_complete(scene, object, integrator);
 }
 
+static void clear_interactions(struct scene_interactions *interactions) {
+    for (int k = 0; k < interactions->count; k++)
+        mf_memory_free(interactions->parameters[k]);
+    *interactions = (struct scene_interactions){0};
+}
+
 void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->potential);
     mf_scene_law_clear(&scene->omega);
@@ -244,7 +295,7 @@ void mf_scene_clear(struct scene *scene) {
     mf_scene_many_body_clear(&scene->many_body);
     mf_memory_free(scene->start_values);
     mf_memory_free(scene->integrator_parameters);
-    mf_scene_interactions_clear(&scene->interactions);
+    clear_interactions(&scene->interactions);
     mf_scene_molecules_clear(&scene->molecules);
     *scene = (struct scene){0};
 }
@@ -267,6 +318,34 @@ const char *mf_scene_warning(const struct scene *scene) {
            "conserves its energy, and its temperature drifts";
 }
 
+/// Vectors with a number for each axis, be it 0.
+static void write_parameter(const struct field *field, const char *parameters, int dimensions,
+                            struct json_writer *writer) {
+    const struct field one[] = {*field, FIELD_END};
+    double vector[3];
+    if (field->type != FIELD_LENGTHS) {
+        mf_json_write_fields(writer, one, parameters);
+        return;
+    }
+    memcpy(vector, parameters + field->offset, sizeof vector);
+    mf_json_write_quantities(writer, field->name, field->unit, vector, (size_t)dimensions);
+}
+
+static void write_interactions(const struct scene_interactions *interactions,
+                               struct json_writer *writer) {
+    if (interactions->count == 0)
+        return;
+    mf_json_begin(writer, "interactions");
+    for (int k = 0; k < interactions->count; k++) {
+        const struct interaction *kind = interactions->choice[k].kind;
+        mf_json_begin(writer, kind->name);
+        for (const struct field *field = kind->fields; field->name; field++)
+            write_parameter(field, interactions->parameters[k], interactions->dimensions, writer);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
 void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     const struct simulation_setup *setup = &scene->setup;
     struct top top = {.dimensions = setup->box.dimensions,
@@ -286,7 +365,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
     mf_scene_memory_write(&scene->memory, &setup->composition, writer);
     mf_scene_many_body_write(&scene->many_body, writer);
-    mf_scene_interactions_write(&scene->interactions, writer);
+    write_interactions(&scene->interactions, writer);
     mf_json_begin(writer, "dynamics");
     mf_json_write_text(writer, "integrator", setup->integrator->name);
     mf_json_write_fields(writer, setup->integrator->fields, setup->integrator_parameters);

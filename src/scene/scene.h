@@ -3,7 +3,6 @@
 #pragma once
 
 #include "dynamics/simulation.h"
-#include "scene/scene_interactions.h"
 #include "scene/scene_law.h"
 #include "scene/scene_many_body.h"
 #include "scene/scene_memory.h"
@@ -16,6 +15,14 @@ enum scene_unknown {
     SCENE_FITS_OMEGA = 2,      ///< no "dissipative"; there will be friction
     SCENE_FITS_TRANSVERSE = 4, ///< no "dissipative_transverse"; the same
     SCENE_FITS_MEMORY = 8,     ///< modes of "memory" without "omega"
+};
+
+/// Owns the numbers of the interactions that a scene names.
+struct scene_interactions {
+    struct interaction_choice choice[INTERACTION_MAX];
+    void *parameters[INTERACTION_MAX];
+    int count;
+    int dimensions; ///< of the scene: how many numbers a vector has
 };
 
 /// What of it the file says. A fit chooses what is left out.

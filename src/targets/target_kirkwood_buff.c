@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "targets/target_files.h"
 
-#include "scene/pair_names.h"
+#include "scene/scene_law.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #include "targets/target_files.h"
 
 #include "base/memory.h"
-#include "scene/pair_names.h"
+#include "scene/scene_law.h"
 
 #include <math.h>
 #include <string.h>
