@@ -29,12 +29,6 @@ const char *mf_fit_choice_text(const struct fit_choice *choice, const char *unit
     return text;
 }
 
-double mf_fit_choice_as_read(const struct fit_choice *choice, const char *unit, double value) {
-    const struct units *units = &choice->fit->scene.units;
-    const double factor = units->system == UNITS_REDUCED ? 1 : mf_units_factor(units, unit);
-    return mf_units_file_value(value, factor) / factor;
-}
-
 /// The nearest number that a file may have there: a choice that the reader would refuse is none.
 static double nearest_allowed(const struct fit_choice *choice, const char *path,
                               const struct field *field, double value) {
@@ -45,6 +39,16 @@ static double nearest_allowed(const struct fit_choice *choice, const char *path,
                            mf_fit_choice_text(choice, field->unit, allowed, text),
                            mf_fit_choice_text(choice, field->unit, value, wanted));
     return allowed;
+}
+
+double mf_fit_choice_number(const struct fit_choice *choice, const char *path,
+                            const struct field *fields, const char *key, double value) {
+    const struct units *units = &choice->fit->scene.units;
+    while (strcmp(fields->name, key) != 0)
+        fields++;
+    const double factor = units->system == UNITS_REDUCED ? 1 : mf_units_factor(units, fields->unit);
+    value = nearest_allowed(choice, path, fields, value);
+    return mf_units_file_value(value, factor) / factor;
 }
 
 bool mf_fit_choice_give(const struct fit_choice *choice, const struct fit_place *place,
@@ -59,10 +63,9 @@ bool mf_fit_choice_give(const struct fit_choice *choice, const struct fit_place 
     if (field->type == FIELD_CHOICE)
         memcpy(member, &(int){(int)value}, sizeof(int));
     else
-        value = nearest_allowed(choice, place->path, field, value);
+        value = mf_fit_choice_number(choice, place->path, place->fields, key, value);
     if (field->type == FIELD_NUMBER)
-        memcpy(member, &(double){mf_fit_choice_as_read(choice, field->unit, value)},
-               sizeof(double));
+        memcpy(member, &value, sizeof value);
     if (field->type == FIELD_INTEGER)
         memcpy(member, &(int64_t){(int64_t)value}, sizeof(int64_t));
     *place->given |= bit;

@@ -48,9 +48,10 @@ struct fit_place {
 bool mf_fit_choice_give(const struct fit_choice *choice, const struct fit_place *place,
                         const char *key, double value);
 
-/// A number as it is when it has been written to used.json, in the units of the file, and is read
-/// again: that is what is chosen, so that used.json gives the same fit.
-double mf_fit_choice_as_read(const struct fit_choice *choice, const char *unit, double value);
+/// A number of a field as it is chosen: within its range, and as it is when it has been written to
+/// used.json, in the units of the file, and is read again, so that used.json gives the same fit.
+double mf_fit_choice_number(const struct fit_choice *choice, const char *path,
+                            const struct field *fields, const char *key, double value);
 
 /// Make a law that has none the friction weight σ (1 − r/cutoff). Fails: NO_MEMORY.
 enum status mf_fit_choice_give_omega(const struct fit_choice *choice, const char *path,

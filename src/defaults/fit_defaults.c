@@ -205,7 +205,7 @@ static void choose_time_step(struct fit_choice *c) {
     if (c->fit->scene.given.time_step)
         return;
     c->time_step = fit_interval(c, fmin(free, bound));
-    *time_step = mf_fit_choice_as_read(c, "tau", c->time_step);
+    *time_step = mf_fit_choice_number(c, "scene", mf_scene_fields, "time_step", c->time_step);
     char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
     mf_fit_choice_text(c, "tau", c->time_step, step);
     mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
