@@ -204,7 +204,7 @@ static enum status read_pairs(struct scene_law *law, struct json_object *object,
                               const struct composition *composition, const struct units *units) {
     char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     const char *key[COMPOSITION_MAX_PAIRS];
-    const bool known = mf_pair_names_find(object, composition, key);
+    const bool known = mf_scene_pair_names_find(object, composition, key);
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         mf_composition_pair_name(composition, pair, name[pair]);
         if (key[pair])
@@ -307,8 +307,8 @@ static void fault_unknown(struct json_object *object, const struct composition *
     mf_json_fault(object, key, "unknown pair; expected %s", names);
 }
 
-bool mf_pair_names_find(struct json_object *object, const struct composition *composition,
-                        const char *key[COMPOSITION_MAX_PAIRS]) {
+bool mf_scene_pair_names_find(struct json_object *object, const struct composition *composition,
+                              const char *key[COMPOSITION_MAX_PAIRS]) {
     const char *member;
     bool all = true;
     for (int pair = 0; pair < COMPOSITION_MAX_PAIRS; pair++)
@@ -331,8 +331,8 @@ bool mf_pair_names_find(struct json_object *object, const struct composition *co
     return all;
 }
 
-bool mf_pair_names_refuse(struct json_object *object, const struct composition *composition,
-                          const char *instead) {
+bool mf_scene_pair_names_refuse(struct json_object *object, const struct composition *composition,
+                                const char *instead) {
     const char *key;
     for (size_t n = 0; (key = mf_json_key(object, n)); n++) {
         if (!mf_json_is_object(object, key))

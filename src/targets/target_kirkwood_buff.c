@@ -59,13 +59,13 @@ static enum status read(struct target_files *files, int kind, struct json_object
     for (size_t pair = 0; pair < target->pairs; pair++)
         target->value[pair] = target->error[pair] = NAN;
     if (!composition_is_mixed(components)) {
-        if (mf_pair_names_refuse(object, components, "{\"value\": …, \"error\": …}"))
+        if (mf_scene_pair_names_refuse(object, components, "{\"value\": …, \"error\": …}"))
             return STATUS_OK;
         read_number(target, 0, object);
         mf_json_finish(object);
         return STATUS_OK;
     }
-    const bool known = mf_pair_names_find(object, components, key);
+    const bool known = mf_scene_pair_names_find(object, components, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(components, (int)pair, name[pair]);
         mf_json_has(object, name[pair]);

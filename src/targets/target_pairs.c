@@ -100,7 +100,7 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     target->pairs = (size_t)mf_composition_pairs(composition);
     if (!composition_is_mixed(composition)) {
-        if (mf_pair_names_refuse(object, composition, "{\"file\": …}"))
+        if (mf_scene_pair_names_refuse(object, composition, "{\"file\": …}"))
             return STATUS_OK;
         TRY(mf_target_rdf_read(&target->member[0], object, units, fluid->box->dimensions));
         return compare_and_collect(target, object, fluid);
@@ -108,7 +108,7 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
     // The object remembers what it was asked for until it is finished.
     char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     const char *key[COMPOSITION_MAX_PAIRS];
-    const bool known = mf_pair_names_find(object, composition, key);
+    const bool known = mf_scene_pair_names_find(object, composition, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(composition, (int)pair, name[pair]);
         if (!mf_composition_has_pairs(composition, (int)pair)) {
