@@ -65,8 +65,8 @@ struct json_word {
 };
 
 /// Put words into the document, before its root is viewed. Fails: NO_MEMORY; BAD_INPUT if the file
-/// says one of them, too, or if there is no value in the JSON. Tested: cli/test_fit_target,
-/// test_library.
+/// says one of them, too, or if there is no value in the JSON. Tested: test_json_words,
+/// cli/test_fit_target, test_library.
 enum status mf_json_add(struct json_document *document, const struct json_word *words,
                         size_t count) MUST_USE;
 
@@ -124,7 +124,7 @@ int mf_json_numbers(const struct json_object *object, const char *key, double *v
 /// the folder of the document's file unless absolute. An absent object gives the defaults and no
 /// faults: that it is missing was mf_json_child's to say. null, as mf_json_write_number writes what
 /// is not known, is allowed for numbers whose default is NAN.
-/// Returns the fields that the object has, as bits of mf_fields_bit.
+/// Returns the fields that the object has, as bits of mf_fields_bit. Tested: test_json_words.
 uint64_t mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
 
 /// Read a required text such as the name of a law: NULL (and a fault) if absent or not a text.
