@@ -3,8 +3,9 @@
 // What `describe` tells of: the keys of files by topics, and the objects inside them.
 #include "app/cmd_describe.h"
 
+#include "problem/numbers.h"
 #include "defaults/fit_file.h"
-#include "defaults/fit_friction.h"
+#include "defaults/fit_unknowns.h"
 #include "defaults/methods.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/measure.h"

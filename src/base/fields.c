@@ -4,6 +4,13 @@
 #include <math.h>
 #include <string.h>
 
+uint64_t mf_fields_bit(const struct field *fields, const char *name) {
+    uint64_t bit = 1;
+    for (const struct field *field = fields; strcmp(field->name, name) != 0; field++)
+        bit <<= 1;
+    return bit;
+}
+
 void mf_fields_set_defaults(const struct field *fields, void *parameters) {
     for (const struct field *field = fields; field->name; field++) {
         char *member = (char *)parameters + field->offset;

@@ -46,6 +46,9 @@ struct field {
 /// 2^53: integers beyond it lose digits in JSON.
 #define FIELD_LARGEST_INTEGER 9007199254740992.0
 
+/// The bit of a field in a set of those of its table, such as the ones that somebody gave.
+uint64_t mf_fields_bit(const struct field *fields, const char *name);
+
 /// Set every member of `parameters` to its default.
 void mf_fields_set_defaults(const struct field *fields, void *parameters);
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands/command.h"
-#include "base/memory.h"
 #include "base/ranks.h"
-#include "io/json_fill.h"
+#include "io/json.h"
 #include "io/output.h"
 #include "io/text_file.h"
 #include "work/fit.h"
@@ -16,6 +15,9 @@ enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, FRICTION, LIVE };
 
 /// Of --explain.
 enum { MAX_RANKS = 100000 };
+
+/// That the command line can say of a file: density, temperature, friction.
+enum { FIT_WORDS = 3 };
 
 static const struct command_option options[] = {
     [EXPLAIN] = {"--explain", NULL, "print what will be done and what it costs; run nothing"},
@@ -68,31 +70,42 @@ static enum status run_whole(const char *file, const struct command_line *line) 
                               : run_shared(file, line);
 }
 
-/// The file with what the command line puts into it.
-static enum status run_with(const char *file, const char *text, const struct command_line *line,
-                            enum status (*run_it)(const char *, const struct command_line *)) {
-    const struct memory_file memory_files = {file, text};
-    mf_text_file_set_memory_files(&memory_files, 1);
-    const enum status status = run_it(file, line);
-    mf_text_file_set_memory_files(NULL, 0);
-    return status;
+/// The file, with a word about it if there is one.
+static enum status run_with(const char *file, const struct command_line *line,
+                            const struct json_word *words, size_t count) {
+    struct json_word all[FIT_WORDS];
+    struct command_line own = *line;
+    for (size_t k = 0; k < count; k++)
+        all[k] = words[k];
+    if (line->own[FRICTION])
+        all[count++] = (struct json_word){.key = "friction", .text = line->own[FRICTION]};
+    own.options.words = all;
+    own.options.word_count = count;
+    return run_whole(file, &own);
 }
 
-static enum status run_file(const char *file, const struct command_line *line) {
-    const struct json_filling friction = {.key = "friction", .text = line->own[FRICTION]};
-    char *text;
-    if (friction.text == NULL)
-        return run_whole(file, line);
-    TRY(mf_json_fill(file, NULL, &friction, 1, &text));
-    const enum status status = run_with(file, text, line, run_whole);
-    mf_memory_free(text);
-    return status;
+/// What the command line says of the scene.
+static enum status find_words(const struct command_line *line, struct json_word *words,
+                              size_t *count) {
+    static const struct {
+        int option;
+        const char *key, *name;
+    } known[] = {{DENSITY, "density", "--density"}, {TEMPERATURE, "temperature", "--temperature"}};
+    *count = 0;
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
+        if (line->own[known[k].option] == NULL)
+            continue;
+        words[*count] = (struct json_word){.object = "scene", .key = known[k].key};
+        TRY(parse_positive(known[k].name, line->own[known[k].option], &words[(*count)++].value));
+    }
+    return STATUS_OK;
 }
 
-/// A run file that nobody wrote: g(r) of the folder, density and temperature.
-static enum status run_rdf(const char *file, const char *rdf, const struct command_line *line) {
-    double density = 0, temperature = 1;
-    char text[256];
+/// A run file that nobody wrote: g(r) of the folder, of what density and temperature the words say.
+static enum status run_rdf(const char *file, const char *rdf, const struct command_line *line,
+                           const struct json_word *words, size_t count) {
+    static const char text[] = "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}}";
+    const struct memory_file unwritten = {.name = file, .text = text};
     if (access(rdf, R_OK) != 0)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "--target: %s not found, nor rdf.tsv for use with --density", file);
@@ -100,49 +113,25 @@ static enum status run_rdf(const char *file, const char *rdf, const struct comma
         return mf_status_fail(STATUS_BAD_INPUT,
                               "--target: %s not found: give --density and --temperature instead",
                               file);
-    TRY(parse_positive("--density", line->own[DENSITY], &density));
-    if (line->own[TEMPERATURE])
-        TRY(parse_positive("--temperature", line->own[TEMPERATURE], &temperature));
-    snprintf(text, sizeof text,
-             "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}, "
-             "\"scene\": {\"density\": %.17g, \"temperature\": %.17g}}",
-             density, temperature);
-    return run_with(file, text, line, run_file);
-}
-
-/// The folder's target.json with what the command line says and the file does not.
-static enum status run_filled(const char *file, const struct command_line *line) {
-    struct json_filling filling[2];
-    size_t count = 0;
-    char *text;
-    if (line->own[DENSITY]) {
-        filling[count].key = "density";
-        TRY(parse_positive("--density", line->own[DENSITY], &filling[count++].value));
-    }
-    if (line->own[TEMPERATURE]) {
-        filling[count].key = "temperature";
-        TRY(parse_positive("--temperature", line->own[TEMPERATURE], &filling[count++].value));
-    }
-    TRY(mf_json_fill(file, "scene", filling, count, &text));
-    const enum status status = run_with(file, text, line, run_file);
-    mf_memory_free(text);
+    mf_text_file_set_memory_files(&unwritten, 1);
+    const enum status status = run_with(file, line, words, count);
+    mf_text_file_set_memory_files(NULL, 0);
     return status;
 }
 
 static enum status run_target(const char *folder, const struct command_line *line) {
     char file[OUTPUT_PATH_SIZE], rdf[OUTPUT_PATH_SIZE];
-    size_t length = strlen(folder);
+    struct json_word words[FIT_WORDS];
+    size_t length = strlen(folder), count;
     while (length > 1 && folder[length - 1] == '/')
         length--;
     if (length + sizeof "/target.json" > sizeof file)
         return mf_status_fail(STATUS_BAD_INPUT, "--target: the path is too long");
     snprintf(file, sizeof file, "%.*s/target.json", (int)length, folder);
     snprintf(rdf, sizeof rdf, "%.*s/rdf.tsv", (int)length, folder);
-    if (access(file, F_OK) != 0)
-        return run_rdf(file, rdf, line);
-    if (line->own[DENSITY] || line->own[TEMPERATURE])
-        return run_filled(file, line);
-    return run_file(file, line);
+    TRY(find_words(line, words, &count));
+    return access(file, F_OK) == 0 ? run_with(file, line, words, count)
+                                   : run_rdf(file, rdf, line, words, count);
 }
 
 static bool has_file(const char *folder, const char *name) {
@@ -178,7 +167,7 @@ static enum status run(const struct command_line *line) {
     if (line->own[DENSITY] || line->own[TEMPERATURE])
         return mf_status_fail(STATUS_BAD_INPUT, "--density and --temperature are for --target DIR");
     TRY(check_no_folder(line->files[0]));
-    return run_file(line->files[0], line);
+    return run_with(line->files[0], line, NULL, 0);
 }
 
 const struct command mf_command_fit = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "defaults/fit_base.h"
+#include "defaults/fit_unknowns.h"
 
 #include "base/memory.h"
 #include "inversion/inversion.h"
@@ -16,8 +16,8 @@ static enum unknown_base base_of(const struct fit_unknown *unknown) {
 
 void mf_fit_base_check(struct fit_unknown *unknown, struct json_object *object) {
     struct unknown_parameters *p = &unknown->parameters;
-    if (p->base == BASE_AUTO && !mf_json_has(object, "base") &&
-        (mf_json_has(object, "minimum") || mf_json_has(object, "maximum")))
+    if (p->base == BASE_AUTO && !fit_unknown_says(unknown, "base") &&
+        (fit_unknown_says(unknown, "minimum") || fit_unknown_says(unknown, "maximum")))
         p->base = BASE_NONE;
     const enum unknown_base base = base_of(unknown);
     if (isnan(p->minimum))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "defaults/fit_check.h"
+#include "defaults/fit_file.h"
 
 #include "defaults/fit_densities.h"
 #include "defaults/methods.h"

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// @file What is known while the program chooses what a run file leaves out
-/// (defaults/fit_defaults.h), and how it puts a choice into the document.
-///
-/// Paths are of objects, "scene.particles"; what a file has at a path and key is never replaced.
+/// (defaults/fit_defaults.h), and how it puts a choice into the struct of what is chosen.
 #pragma once
 
 #include "defaults/fit_file.h"
@@ -10,9 +8,8 @@
 
 /// Filled in from choice to choice, in their order.
 struct fit_choice {
-    const struct fit_file *read, *leader;
-    struct json_object *root;
-    struct fit_choices *choices;
+    struct fit_file *fit;
+    const struct fit_file *leader;
     const struct fit_scales_rdf *rdf;
     struct fit_scales scales;
     int dimensions;
@@ -21,7 +18,7 @@ struct fit_choice {
     double crossing;      ///< time in which a bead flies, or diffuses, as far as its neighbours
                           ///< are [τ]
     double range;         ///< of g(r) as it will be used [λ]
-    size_t joined;        ///< bins of `read` that make one of `rdf`
+    size_t joined;        ///< bins of the fit that make one of `rdf`
     double count;         ///< beads of a simulation
     double time_step;     ///< [τ]
     double precision;     ///< of the method, of g
@@ -38,23 +35,27 @@ enum { FIT_CHOICE_TEXT_SIZE = 160 };
 const char *mf_fit_choice_text(const struct fit_choice *choice, const char *unit, double value,
                                char text[FIT_CHOICE_TEXT_SIZE]);
 
-/// Whether the file does not say a key; the object at a path, without the reader learning of
-/// either.
-bool mf_fit_choice_lacks(const struct json_object *root, const char *path, const char *key);
-struct json_object mf_fit_choice_object(const struct json_object *root, const char *path);
+/// A struct of which something may be chosen.
+struct fit_place {
+    const char *path; ///< of its object, for messages
+    const struct field *fields;
+    void *parameters;
+    uint64_t *given; ///< fields that the file says or that were chosen before (mf_fields_bit)
+};
 
-/// Put in a text; a number without a unit; a number or whole number of a field table in its type,
-/// its range, whatever a target asks for, and the units of the file (tested: test_fit_defaults);
-/// the friction weight σ (1 − r/cutoff); an object without members. Fails: NO_MEMORY.
-enum status mf_fit_choice_give_text(const struct json_object *root, const char *path,
-                                    const char *key, const char *text) MUST_USE;
-enum status mf_fit_choice_give_number(const struct json_object *root, const char *path,
-                                      const char *key, double value) MUST_USE;
-enum status mf_fit_choice_give(const struct fit_choice *choice, const char *path,
-                               const struct field *fields, const char *key, double value) MUST_USE;
+/// Choose a number or one of the choices of a field, within its range whatever a target asks for,
+/// unless it is given. Returns whether it was chosen. Tested: test_fit_defaults.
+bool mf_fit_choice_give(const struct fit_choice *choice, const struct fit_place *place,
+                        const char *key, double value);
+
+/// A number of a field as it is chosen: within its range, and as it is when it has been written to
+/// used.json, in the units of the file, and is read again, so that used.json gives the same fit.
+double mf_fit_choice_number(const struct fit_choice *choice, const char *path,
+                            const struct field *fields, const char *key, double value);
+
+/// Make a law that has none the friction weight σ (1 − r/cutoff). Fails: NO_MEMORY.
 enum status mf_fit_choice_give_omega(const struct fit_choice *choice, const char *path,
-                                     double sigma, double cutoff) MUST_USE;
-enum status mf_fit_choice_give_empty(const struct json_object *root, const char *path) MUST_USE;
+                                     double sigma, double cutoff, struct scene_law *law) MUST_USE;
 
 /// The time step that bonds, angles and dihedrals ask for by their targets and the integrator [τ];
 /// infinite without.
@@ -77,4 +78,9 @@ double mf_fit_defaults_precision(const struct fit_choice *choice);
 
 /// The choices of the method and of the verification (defaults/fit_defaults_method.c).
 enum status mf_fit_defaults_method(struct fit_choice *choice) MUST_USE;
-enum status mf_fit_defaults_verification(struct fit_choice *choice) MUST_USE;
+void mf_fit_defaults_verification(struct fit_choice *choice);
+struct fit_place mf_fit_defaults_verification_place(const struct fit_choice *choice);
+
+/// A method with its default parameters. Fails: NO_MEMORY.
+enum status mf_fit_defaults_take_method(struct fit_choice *choice,
+                                        const struct inverse_method *method) MUST_USE;

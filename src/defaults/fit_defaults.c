@@ -2,99 +2,80 @@
 #include "defaults/fit_defaults.h"
 
 #include "defaults/fit_choice.h"
-#include "defaults/fit_friction.h"
+#include "defaults/fit_unknowns.h"
 #include "inversion/inversions.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-static bool lacks_method(const struct json_object *root) {
-    return mf_fit_choice_lacks(root, "", "method");
+static bool lacks_method(const struct fit_file *fit) {
+    return fit->method == NULL;
+}
+
+static bool says_verification(const struct fit_file *fit, const char *key) {
+    return fit->verification_given & mf_fields_bit(mf_verify_fields, key);
 }
 
 /// A part of it is enough.
-static bool lacks_verification(const struct json_object *root) {
+static bool lacks_verification(const struct fit_file *fit) {
     static const char *const keys[] = {"replicas", "equilibration", "every", "samples"};
     bool lacks = false;
     for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
-        lacks = lacks || mf_fit_choice_lacks(root, "verification", keys[k]);
+        lacks = lacks || !says_verification(fit, keys[k]);
     return lacks;
 }
 
 /// Before a fit a time step can be chosen for its target alone: the verification takes it as a
 /// first one.
-static enum status choose_shorter_steps(struct fit_choice *c) {
-    static const char *const path = "verification", *const key = "shorten_time_step";
-    const bool given = !mf_fit_choice_lacks(c->root, "scene", "time_step") ||
-                       !mf_fit_choice_lacks(c->root, path, "time_step") ||
-                       !mf_fit_choice_lacks(c->root, path, key);
-    return given || !mf_verify_step_can_shorten(&c->read->scene.setup)
-               ? STATUS_OK
-               : mf_fit_choice_give_text(c->root, path, key, "yes");
+static void choose_shorter_steps(struct fit_choice *c) {
+    const struct fit_place verification = mf_fit_defaults_verification_place(c);
+    if (!c->fit->scene.given.time_step && !says_verification(c->fit, "time_step") &&
+        mf_verify_step_can_shorten(&c->fit->scene.setup))
+        mf_fit_choice_give(c, &verification, "shorten_time_step", true);
 }
 
 /// Whether nothing would hold the temperature.
-static bool lacks_friction(const struct json_object *root) {
-    return mf_fit_choice_lacks(root, "scene", "dissipative") &&
-           mf_fit_choice_lacks(root, "scene", "dissipative_transverse") &&
-           mf_fit_choice_lacks(root, "scene", "dynamics") &&
-           mf_fit_choice_lacks(root, "scene", "memory");
+static bool lacks_friction(const struct fit_file *fit) {
+    const struct scene_given *given = &fit->scene.given;
+    return !given->dissipative && !given->transverse && !given->dynamics && !given->memory;
 }
 
-/// Whether it follows from a density how many beads there are.
-static bool lacks_count(const struct json_object *root) {
-    return !mf_fit_choice_lacks(root, "scene", "density") &&
-           mf_fit_choice_lacks(root, "scene.particles", "count") &&
-           mf_fit_choice_lacks(root, "scene.particles", "types") &&
-           mf_fit_choice_lacks(root, "scene", "molecules");
-}
-
-bool mf_fit_defaults_wanted(const struct json_object *root) {
-    return root->item &&
-           (lacks_method(root) || lacks_count(root) || lacks_friction(root) ||
-            mf_fit_choice_lacks(root, "scene", "time_step") || lacks_verification(root));
+static bool leaves_choices(const struct fit_file *fit) {
+    return lacks_method(fit) || !fit->scene.given.count || lacks_friction(fit) ||
+           !fit->scene.given.time_step || lacks_verification(fit);
 }
 
 // The choices -------------------------------------------------------------------------------------
 
 /// Give a key of the target g(r), of a mixture those of each pair type that do not say it.
-static enum status give_to_pairs(struct fit_choice *c, const char *name, double value,
-                                 bool *given) {
-    const struct composition *composition = c->rdf->composition;
-    const char *key;
-    struct json_object rdf = mf_fit_choice_object(c->root, "target.rdf");
-    *given = false;
-    for (size_t n = 0; (key = mf_json_key(&rdf, n)); n++) {
-        char path[JSON_PATH_SIZE] = "target.rdf";
-        if (composition_is_mixed(composition) && mf_composition_find_pair(composition, key) < 0)
-            continue;
-        if (composition_is_mixed(composition))
-            snprintf(path, sizeof path, "target.rdf.%.64s", key);
-        if (!mf_fit_choice_lacks(c->root, path, name))
-            continue;
-        TRY(mf_fit_choice_give(c, path, mf_target_rdf_fields, name, value));
-        *given = true;
-        rdf = mf_fit_choice_object(c->root, "target.rdf");
+static bool give_to_pairs(struct fit_choice *c, const char *key, double value) {
+    struct target_pairs *rdf = c->fit->files.own[TARGET_RDF];
+    bool given = false;
+    for (size_t pair = 0; pair < rdf->pairs; pair++) {
+        struct target_rdf *member = &rdf->member[pair];
+        const struct fit_place place = {"target.rdf", mf_target_rdf_fields, &member->parameters,
+                                        &member->given};
+        if (mf_composition_has_pairs(c->rdf->composition, (int)pair))
+            given |= mf_fit_choice_give(c, &place, key, value);
     }
-    return STATUS_OK;
+    return given;
 }
 
 /// Whether the file says how wide the bins of any pair type are.
 static bool says_bins(const struct fit_choice *c) {
     bool says = false;
-    for (size_t pair = 0; pair < target_files_rdf(&c->read->files)->pairs; pair++)
-        says = says || target_files_rdf(&c->read->files)->member[pair].parameters.bin_width > 0;
+    for (size_t pair = 0; pair < target_files_rdf(&c->fit->files)->pairs; pair++)
+        says = says || target_files_rdf(&c->fit->files)->member[pair].parameters.bin_width > 0;
     return says;
 }
 
 /// Rows finer than what g distinguishes are joined: to those of the first state, if there are more.
 static enum status choose_bins(struct fit_choice *c, struct fit_scales_rdf *rdf) {
     static const double finest = 0.001, coarsest = 0.004;
-    const struct target_files *files = &c->read->files;
+    const struct target_files *files = &c->fit->files;
     char text[FIT_CHOICE_TEXT_SIZE];
-    bool given;
-    if (!files->given[TARGET_RDF] || !c->read->unknown[UNKNOWN_POTENTIAL].wanted || says_bins(c))
+    if (!files->given[TARGET_RDF] || !c->fit->unknown[UNKNOWN_POTENTIAL].wanted || says_bins(c))
         return STATUS_OK;
     size_t of = mf_fit_scales_joined(rdf, finest, coarsest);
     if (c->leader)
@@ -104,7 +85,7 @@ static enum status choose_bins(struct fit_choice *c, struct fit_scales_rdf *rdf)
         return STATUS_OK;
     TRY(mf_fit_scales_rdf_join(rdf, of));
     c->joined = of;
-    TRY(give_to_pairs(c, "bin_width", rdf->bins.width, &given));
+    give_to_pairs(c, "bin_width", rdf->bins.width);
     mf_fit_choice_note(c, "bins of %s: %s", mf_fit_choice_text(c, "lambda", rdf->bins.width, text),
                        c->leader ? "as the first state has them"
                                  : "as wide as they can be with g between them within its noise");
@@ -130,53 +111,54 @@ static double find_cutoff(const struct fit_choice *c, const char **why) {
         return last_row(bins, bins->count - 1,
                         target_files_rdf(&c->leader->files)->member[0].joined);
     }
-    if (mf_fit_choice_lacks(c->root, "scene", "box"))
+    if (c->fit->scene.density > 0) // and no box
         return cutoff;
-    const double half = 0.5 * mf_box_shortest(&c->read->scene.setup.box),
+    const double half = 0.5 * mf_box_shortest(&c->fit->scene.setup.box),
                  last = floor((half - c->rdf->bins.low) / c->rdf->bins.width + 1e-9);
     if (last < 1)
         return cutoff;
     const double within = last_row(&c->rdf->bins, (size_t)last - 1,
-                                   c->joined * target_files_rdf(&c->read->files)->member[0].joined);
+                                   c->joined * target_files_rdf(&c->fit->files)->member[0].joined);
     if (within >= cutoff || within < min_of_box * cutoff)
         return cutoff;
     *why = "half of the box";
     return within;
 }
 
-static enum status choose_cutoff(struct fit_choice *c) {
+static void choose_cutoff(struct fit_choice *c) {
     static const double worth = 0.9;
     const char *why;
     char text[FIT_CHOICE_TEXT_SIZE];
-    bool given;
     const double cutoff = find_cutoff(c, &why);
     const bool forced = c->leader || strcmp(why, "half of the box") == 0;
     if (!c->finds[UNKNOWN_POTENTIAL] || (cutoff > worth * c->range && !forced))
-        return STATUS_OK;
-    TRY(give_to_pairs(c, "cutoff", cutoff, &given));
-    if (given)
+        return;
+    if (give_to_pairs(c, "cutoff", cutoff))
         c->range = cutoff + 0.5 * c->rdf->bins.width;
     if (c->range < c->scales.range)
         mf_fit_choice_note(c, "cutoff %s: %s", mf_fit_choice_text(c, "lambda", cutoff, text), why);
-    return STATUS_OK;
 }
 
 /// A box that is somewhat wider than twice what is looked at, with a thousand beads at least.
-static enum status choose_count(struct fit_choice *c) {
+static void choose_count(struct fit_choice *c) {
     static const double min = 1000, margin = 2.2;
-    if (!lacks_count(c->root))
-        return STATUS_OK;
-    const double range = fmax(c->range, target_files_etd(&c->read->files)->grid.r_maximum);
+    struct scene *scene = &c->fit->scene;
+    uint64_t given = 0;
+    if (scene->given.count)
+        return;
+    const double range = fmax(c->range, target_files_etd(&c->fit->files)->grid.r_maximum);
     const double needed = c->density * pow(margin * range, c->dimensions);
     c->count = ceil(fmax(min, needed));
     mf_fit_choice_note(
         c, "%.0f particles: %s%s", c->count,
         c->count > min ? "the box is 2.2 times as wide as the range of the targets"
                        : "enough for the statistics, and the box is wider than twice the range",
-        target_files_rdf(&c->read->files)->member[0].parameters.particles > 0
+        target_files_rdf(&c->fit->files)->member[0].parameters.particles > 0
             ? ""
             : "; g(r) is taken for that of as many, since its \"particles\" are not given");
-    return mf_fit_choice_give(c, "scene.particles", mf_placement_count_fields, "count", c->count);
+    const struct fit_place place = {"scene.particles", mf_placement_count_fields,
+                                    &scene->setup.placement, &given};
+    scene->given.count = mf_fit_choice_give(c, &place, "count", c->count);
 }
 
 /// The next lower of 1, 1.2, 1.5, 2, … times a power of 10.
@@ -193,13 +175,13 @@ static double round_down(double value) {
 /// A whole fraction of the interval of targets at times, if there are any; else round in the units
 /// of the file.
 static double fit_interval(const struct fit_choice *c, double time_step) {
-    const struct target_files *files = &c->read->files;
+    const struct target_files *files = &c->fit->files;
     const double interval =
         files->given[TARGET_ETD]    ? target_files_etd(files)->interval
         : files->given[TARGET_VACF] ? target_files_curve(files, TARGET_VACF)->interval
         : files->given[TARGET_MSD]  ? target_files_curve(files, TARGET_MSD)->interval
                                     : 0;
-    const double unit = mf_units_factor(&c->read->scene.units, "tau");
+    const double unit = mf_units_factor(&c->fit->scene.units, "tau");
     return interval > 0 ? interval / ceil(interval / time_step - 1e-9)
                         : round_down(time_step * unit) / unit;
 }
@@ -209,20 +191,21 @@ static double fit_interval(const struct fit_choice *c, double time_step) {
 /// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
 /// neighbours; without velocities it takes as long as the square of that of the time in which it
 /// diffuses there.
-static enum status choose_time_step(struct fit_choice *c) {
+static void choose_time_step(struct fit_choice *c) {
     static const double allowed = 0.01, way = 0.02;
-    const bool has_velocities = c->read->scene.setup.integrator->mobility == NULL;
+    const bool has_velocities = c->fit->scene.setup.integrator->mobility == NULL;
     const double stiff = mf_fit_defaults_stiff_step(c);
     const double free = fmin((has_velocities ? way : way * way) * c->crossing, stiff);
     const double curvature_of_pair = 2 * c->scales.curvature;
     const double bound = has_velocities
                              ? sqrt(4 * allowed * c->mass / curvature_of_pair)
                              : mf_fit_defaults_relaxing_step(c, curvature_of_pair, allowed);
-    if (!mf_fit_choice_lacks(c->root, "scene", "time_step")) {
-        c->time_step = c->read->scene.setup.time_step;
-        return STATUS_OK;
-    }
+    double *const time_step = &c->fit->scene.setup.time_step;
+    c->time_step = *time_step;
+    if (c->fit->scene.given.time_step)
+        return;
     c->time_step = fit_interval(c, fmin(free, bound));
+    *time_step = mf_fit_choice_number(c, "scene", mf_scene_fields, "time_step", c->time_step);
     char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
     mf_fit_choice_text(c, "tau", c->time_step, step);
     mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
@@ -240,19 +223,18 @@ static enum status choose_time_step(struct fit_choice *c) {
     else
         mf_fit_choice_note(
             c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
-    return mf_fit_choice_give(c, "scene", mf_scene_fields, "time_step", c->time_step);
 }
 
 /// In the core, where no pair is seen, the potential goes on bending up more than it does where
 /// pairs come near, so that none is lost there.
-static enum status choose_core(struct fit_choice *c) {
+static void choose_core(struct fit_choice *c) {
     static const double steeper = 1.5, min = 2000;
-    const double temperature = c->read->scene.setup.temperature;
+    const double temperature = c->fit->scene.setup.temperature;
     const double stiffness =
         fmax(steeper * c->scales.curvature, min * temperature / pow(c->scales.neighbour, 2));
-    return c->finds[UNKNOWN_POTENTIAL]
-               ? mf_fit_choice_give(c, "core", mf_fit_core_fields, "stiffness", stiffness)
-               : STATUS_OK;
+    const struct fit_place place = {"core", mf_fit_core_fields, &c->fit->core, &c->fit->core_given};
+    if (c->finds[UNKNOWN_POTENTIAL])
+        mf_fit_choice_give(c, &place, "stiffness", stiffness);
 }
 
 /// Whether something is to be fitted that friction decides.
@@ -264,22 +246,20 @@ static bool fits_motion(const struct target_files *files) {
 }
 
 /// The potential, and ω if what is to be fitted moves and no friction is given.
-static enum status choose_unknowns(struct fit_choice *c) {
-    static const char *const path = "unknowns";
-    const bool moves = fits_motion(&c->read->files) &&
-                       mf_fit_choice_lacks(c->root, "scene", "dissipative") &&
-                       mf_fit_choice_lacks(c->root, "scene", "conservative");
+static void choose_unknowns(struct fit_choice *c) {
+    struct fit_file *fit = c->fit;
+    struct scene *scene = &fit->scene;
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        c->finds[kind] = c->read->unknown[kind].wanted;
-    if (!mf_fit_choice_lacks(c->root, "", path) || !moves)
-        return STATUS_OK;
-    c->finds[UNKNOWN_OMEGA] = true;
+        c->finds[kind] = fit->unknown[kind].wanted;
+    if (fit->says_unknowns || !fits_motion(&fit->files) || scene->given.dissipative ||
+        scene->given.conservative)
+        return;
     mf_fit_choice_note(
         c, "unknowns: the potential and, since targets that move are to be fitted, omega");
-    TRY(mf_fit_choice_give_empty(c->root, "unknowns.potential"));
-    TRY(mf_fit_choice_give_empty(c->root, "unknowns.omega"));
-    bool changed;
-    return mf_fit_friction_put(c->root, &changed);
+    c->finds[UNKNOWN_OMEGA] = true;
+    fit->unknown[UNKNOWN_POTENTIAL].wanted = fit->unknown[UNKNOWN_OMEGA].wanted = true;
+    scene->unknown |= SCENE_FITS_POTENTIAL | SCENE_FITS_OMEGA;
+    mf_fit_friction_take(&fit->unknown[UNKNOWN_OMEGA], (enum fit_friction)fit->friction);
 }
 
 /// Friction of any kind, along or across pairs.
@@ -292,7 +272,7 @@ static bool finds_friction(const struct fit_choice *c) {
 
 /// It holds the temperature against what the integrator heats, and leaves g(r) as it is.
 static enum status choose_friction(struct fit_choice *c) {
-    if (finds_friction(c) || !lacks_friction(c->root))
+    if (finds_friction(c) || !lacks_friction(c->fit))
         return STATUS_OK;
     const double cutoff = c->scales.shell, sigma = mf_fit_defaults_sigma(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
@@ -303,63 +283,62 @@ static enum status choose_friction(struct fit_choice *c) {
         "a bead forgets its velocity in %s",
         mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
         mf_fit_choice_text(c, "lambda", cutoff, end), mf_fit_choice_text(c, "tau", time, memory));
-    c->choices->thermostat = true;
-    return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff);
+    c->fit->choices.thermostat = true;
+    return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff, &c->fit->scene.omega);
 }
 
 static enum status choose_all(struct fit_choice *c) {
-    static enum status (*const steps[])(struct fit_choice *) = {
-        choose_unknowns,
-        choose_core,
-        choose_cutoff,
-        choose_count,
-        choose_time_step,
-        mf_fit_defaults_omega,
-        choose_friction,
-        mf_fit_defaults_method,
-        mf_fit_defaults_verification,
-    };
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
-        TRY(steps[k](c));
+    choose_unknowns(c);
+    choose_core(c);
+    choose_cutoff(c);
+    choose_count(c);
+    choose_time_step(c);
+    TRY(mf_fit_defaults_omega(c));
+    TRY(choose_friction(c));
+    TRY(mf_fit_defaults_method(c));
+    mf_fit_defaults_verification(c);
     return STATUS_OK;
 }
 
 /// Beside a method that the file gives: without friction nothing would hold the temperature.
 /// Molecules have many pairs, and are long on their way.
 static enum status choose_simulation(struct fit_choice *c) {
-    const bool joined = scene_has_molecules(&c->read->scene.molecules);
+    const bool joined = scene_has_molecules(&c->fit->scene.molecules);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        c->finds[kind] = c->read->unknown[kind].wanted;
+        c->finds[kind] = c->fit->unknown[kind].wanted;
     if (joined)
-        TRY(choose_cutoff(c));
-    TRY(choose_count(c));
-    TRY(choose_time_step(c));
+        choose_cutoff(c);
+    choose_count(c);
+    choose_time_step(c);
     TRY(choose_friction(c));
-    return joined ? mf_fit_defaults_verification(c) : STATUS_OK;
+    if (joined)
+        mf_fit_defaults_verification(c);
+    return STATUS_OK;
 }
 
 /// Molecules without pairs do not see each other: nothing but their bonds, angles and dihedrals is
 /// to be found, and what holds their temperature is Monte Carlo.
 static enum status choose_without_pairs(struct fit_choice *c) {
     enum { EQUILIBRATION = 2000, SAMPLES = 200, EVERY = 20 };
-    static const char *const path = "verification";
+    const struct fit_place verification = mf_fit_defaults_verification_place(c);
     mf_fit_choice_note(
         c,
         "method \"%s\": it finds the potentials of bonds, angles and dihedrals from "
         "their distributions; without \"target.rdf\" and \"scene.conservative\" beads "
         "do not act as pairs",
         mf_automatic.name);
-    TRY(mf_fit_choice_give_text(c->root, "method", "name", mf_automatic.name));
-    if (lacks_friction(c->root)) {
+    TRY(mf_fit_defaults_take_method(c, &mf_automatic));
+    if (lacks_friction(c->fit)) {
         mf_fit_choice_note(c,
                            "dynamics \"%s\" of the verification: nothing else thermostats "
                            "molecules without pair friction",
                            mf_monte_carlo.name);
-        TRY(mf_fit_choice_give_text(c->root, "scene.dynamics", "integrator", mf_monte_carlo.name));
+        c->fit->integrator = &mf_monte_carlo;
     }
-    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", EQUILIBRATION));
-    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "samples", SAMPLES));
-    return mf_fit_choice_give(c, path, mf_verify_fields, "every", EVERY);
+    mf_fit_choice_give(c, &verification, "equilibration", EQUILIBRATION);
+    mf_fit_choice_give(c, &verification, "samples", SAMPLES);
+    mf_fit_choice_give(c, &verification, "every", EVERY);
+    return STATUS_OK;
 }
 
 static double find_crossing(const struct fit_choice *c, const struct simulation_setup *setup) {
@@ -369,37 +348,36 @@ static double find_crossing(const struct fit_choice *c, const struct simulation_
                : way * sqrt(c->mass / setup->temperature);
 }
 
-enum status mf_fit_defaults_choose(const struct fit_file *read, const struct fit_file *leader,
-                                   struct json_object *root, struct fit_choices *choices) {
-    const struct simulation_setup *setup = &read->scene.setup;
+enum status mf_fit_defaults_choose(struct fit_file *fit, const struct fit_file *leader) {
+    const struct simulation_setup *setup = &fit->scene.setup;
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
+    const bool all = lacks_method(fit);
     enum status status = STATUS_OK;
     struct fit_scales_rdf rdf = {0};
-    struct fit_choice c = {.read = read,
+    struct fit_choice c = {.fit = fit,
                            .leader = leader,
-                           .root = root,
-                           .choices = choices,
                            .rdf = &rdf,
                            .joined = 1,
                            .dimensions = setup->box.dimensions,
                            .count = (double)setup->placement.count};
-    CHECK(choose_shorter_steps(&c));
-    CHECK(mf_fit_scales_rdf_init(&rdf, &read->files, &read->scene));
+    if (!leaves_choices(fit))
+        return STATUS_OK;
+    choose_shorter_steps(&c);
+    CHECK(mf_fit_scales_rdf_init(&rdf, &fit->files, &fit->scene));
     if (rdf.bins.count == 0) { // there are no pairs to choose by
-        status = lacks_method(root) && read->problem.bonded + read->constraints.count > 0
-                     ? choose_without_pairs(&c)
-                     : status;
+        status = all && fit->problem.bonded + fit->constraints.count > 0 ? choose_without_pairs(&c)
+                                                                         : status;
         goto done;
     }
     c.density = rdf.density;
-    if (lacks_method(root))
+    if (all)
         CHECK(choose_bins(&c, &rdf));
     c.scales = mf_fit_scales_find(&rdf, setup->temperature, fit_scales_little);
     c.mass = masses.maximum > 0 ? masses.minimum : 1;
     c.crossing = find_crossing(&c, setup);
     c.range = c.scales.range;
     c.precision = mf_fit_defaults_precision(&c);
-    CHECK(lacks_method(root) ? choose_all(&c) : choose_simulation(&c));
+    CHECK(all ? choose_all(&c) : choose_simulation(&c));
 done:
     mf_fit_scales_rdf_clear(&rdf);
     return status;

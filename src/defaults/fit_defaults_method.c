@@ -17,23 +17,23 @@ double mf_fit_defaults_sigma(const struct fit_choice *c, double cutoff) {
 }
 
 /// A power law: its parameters are few, and its start is one. A steep one needs more at r = 0.
-static enum status choose_power(struct fit_choice *c, double largest, double cutoff) {
-    static const char *const path = "unknowns.omega";
+static void choose_power(struct fit_choice *c, const struct fit_place *omega, double largest,
+                         double cutoff) {
     static const double steeper = 3;
-    const bool steep = mf_fit_choice_lacks(c->root, "unknowns.omega.fixed", "exponent");
+    const struct unknown_parameters *said = omega->parameters;
     char most[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
-    largest *= steep ? steeper : 1;
+    largest *= isnan(said->fixed[INVERSE_EXPONENT]) ? steeper : 1;
     mf_fit_choice_note(c,
                        "omega: a power law of 1 - r/(%s), a cutoff that the fit does not change, "
                        "and at r = 0 from 0 to %s",
                        mf_fit_choice_text(c, "lambda", cutoff, to),
                        mf_fit_choice_text(c, "sqrt(mu/tau)", largest, most));
-    return mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", largest);
+    mf_fit_choice_give(c, omega, "maximum", largest);
 }
 
 /// A spline from where pairs begin.
-static enum status choose_spline(struct fit_choice *c, double largest, double cutoff) {
-    static const char *const path = "unknowns.omega";
+static void choose_spline(struct fit_choice *c, const struct fit_place *omega, double largest,
+                          double cutoff) {
     enum { COEFFICIENTS = 8 };
     char most[FIT_CHOICE_TEXT_SIZE], from[FIT_CHOICE_TEXT_SIZE], to[FIT_CHOICE_TEXT_SIZE];
     mf_fit_choice_note(c, "omega: %d coefficients from 0 to %s, between r = %s and %s, %s",
@@ -41,32 +41,32 @@ static enum status choose_spline(struct fit_choice *c, double largest, double cu
                        mf_fit_choice_text(c, "lambda", c->scales.core, from),
                        mf_fit_choice_text(c, "lambda", cutoff, to),
                        "about the end of the second shell");
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "maximum", largest));
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "coefficients", COEFFICIENTS));
-    return mf_fit_choice_give_text(c->root, path, "curve", "bspline");
-}
-
-static bool is_power(const struct json_object *root) {
-    struct json_object omega = mf_fit_choice_object(root, "unknowns.omega");
-    return mf_json_has(&omega, "curve") &&
-           strcmp(mf_json_choice(&omega, "curve", NULL, ""), "power") == 0;
+    mf_fit_choice_give(c, omega, "maximum", largest);
+    mf_fit_choice_give(c, omega, "coefficients", COEFFICIENTS);
+    mf_fit_choice_give(c, omega, "curve", INVERSE_CURVE_BSPLINE);
 }
 
 enum status mf_fit_defaults_omega(struct fit_choice *c) {
-    static const char *const path = "unknowns.omega";
     static const double shells = 2, beyond_etd = 1.3, max = 6;
-    if (!c->finds[UNKNOWN_OMEGA] || !mf_fit_choice_lacks(c->root, path, "cutoff") ||
-        !mf_fit_choice_lacks(c->root, path, "maximum"))
+    struct fit_unknown *unknown = &c->fit->unknown[UNKNOWN_OMEGA];
+    if (!c->finds[UNKNOWN_OMEGA] || fit_unknown_says(unknown, "cutoff") ||
+        fit_unknown_says(unknown, "maximum"))
         return STATUS_OK;
+    const struct fit_place omega = {"unknowns.omega", unknown->fields, &unknown->said,
+                                    &unknown->given};
     const double cutoff =
         fmin(c->range, fmax(shells * c->scales.shell,
-                            beyond_etd * target_files_etd(&c->read->files)->grid.r_maximum));
+                            beyond_etd * target_files_etd(&c->fit->files)->grid.r_maximum));
     const double sigma = mf_fit_defaults_sigma(c, cutoff);
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "cutoff", cutoff));
-    TRY(mf_fit_choice_give(c, path, mf_inverse_omega_fields, "inner_cutoff", c->scales.core));
-    TRY(is_power(c->root) ? choose_power(c, max * sigma, cutoff)
-                          : choose_spline(c, max * sigma, cutoff));
-    return mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma, cutoff);
+    mf_fit_choice_give(c, &omega, "cutoff", cutoff);
+    mf_fit_choice_give(c, &omega, "inner_cutoff", c->scales.core);
+    if (unknown->said.shape == INVERSE_CURVE_POWER)
+        choose_power(c, &omega, max * sigma, cutoff);
+    else
+        choose_spline(c, &omega, max * sigma, cutoff);
+    return unknown->start.curves > 0 ? STATUS_OK
+                                     : mf_fit_choice_give_omega(c, "unknowns.omega.start", sigma,
+                                                                cutoff, &unknown->start);
 }
 
 /// By how much larger the noise of g of all pair types is, rms, than that of g of all beads in the
@@ -85,7 +85,7 @@ static double find_noise_ratio(const struct composition *composition) {
 
 double mf_fit_defaults_precision(const struct fit_choice *c) {
     // Molecules move slowly: a third of the noise would take ten times as long.
-    const bool slow = scene_has_molecules(&c->read->scene.molecules);
+    const bool slow = scene_has_molecules(&c->fit->scene.molecules);
     const double min = (slow ? 0.003 : 0.001) * find_noise_ratio(c->rdf->composition);
     static const double max = 0.004;
     // Of single beads more samples than that would make the error of the result smaller by an
@@ -119,9 +119,9 @@ static void find_well(const struct target_bonded *target, double *mean, double *
 
 /// ω² of a group, by its target, or by its law if it has none.
 static double fastest_of(const struct fit_choice *c, int order, size_t g, double length) {
-    const struct target_groups *groups = target_files_groups(&c->read->files, order);
-    const struct bonded_curve *curve = &c->read->scene.molecules.molecules.group[order][g].curve;
-    const double temperature = c->read->scene.setup.temperature;
+    const struct target_groups *groups = target_files_groups(&c->fit->files, order);
+    const struct bonded_curve *curve = &c->fit->scene.molecules.molecules.group[order][g].curve;
+    const double temperature = c->fit->scene.setup.temperature;
     double mean, variance;
     if (target_groups_have(groups, g)) {
         find_well(&groups->member[g], &mean, &variance);
@@ -133,15 +133,15 @@ static double fastest_of(const struct fit_choice *c, int order, size_t g, double
 }
 
 static double shortest_bond(const struct fit_choice *c) {
-    const struct molecules *molecules = &c->read->scene.molecules.molecules;
-    const struct target_groups *bonds = target_files_groups(&c->read->files, BONDED_BOND);
+    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
+    const struct target_groups *bonds = target_files_groups(&c->fit->files, BONDED_BOND);
     double length = INFINITY, mean, variance;
     for (size_t g = 0; g < (size_t)molecules->groups[BONDED_BOND]; g++) {
         if (target_groups_have(bonds, g))
             find_well(&bonds->member[g], &mean, &variance);
         else
             mean = mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve,
-                                   c->read->scene.setup.temperature);
+                                   c->fit->scene.setup.temperature);
         length = fmin(length, mean);
     }
     return length;
@@ -151,7 +151,7 @@ double mf_fit_defaults_relaxing_step(const struct fit_choice *c, double curvatur
     // With x = Δt Φ''/γ Euler's steps give a variance of T/(Φ'' (1 − x/2)); those of "brownian" the
     // exact one, and a liquid of Lennard-Jones beads the temperature 1.002(4) with x up to 0.8.
     static const double share_of_exact = 0.4;
-    const struct simulation_setup *setup = &c->read->scene.setup;
+    const struct simulation_setup *setup = &c->fit->scene.setup;
     const double share = setup->integrator == &mf_brownian ? share_of_exact : 2 * allowed;
     return share / (curvature * setup->integrator->mobility(setup));
 }
@@ -159,10 +159,9 @@ double mf_fit_defaults_relaxing_step(const struct fit_choice *c, double curvatur
 double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
     static const double allowed = 0.003;
     // Friction is chosen later, and then aboba is the default.
-    const struct integrator *integrator = mf_fit_choice_lacks(c->root, "scene", "dynamics")
-                                              ? &mf_aboba
-                                              : c->read->scene.setup.integrator;
-    const struct molecules *molecules = &c->read->scene.molecules.molecules;
+    const struct integrator *integrator =
+        c->fit->scene.given.dynamics ? c->fit->scene.setup.integrator : &mf_aboba;
+    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
     const double length = shortest_bond(c);
     double fastest = 0;
     for (int order = 0; order < BONDED_KINDS; order++)
@@ -172,62 +171,77 @@ double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
                                 : sqrt(allowed / (mf_hybrid_step_wrong(integrator) * fastest));
 }
 
+enum status mf_fit_defaults_take_method(struct fit_choice *c, const struct inverse_method *method) {
+    c->fit->method = method;
+    TRY((c->fit->method_parameters = mf_memory_zeroed(1, method->parameters_size))
+            ? STATUS_OK
+            : STATUS_NO_MEMORY);
+    for (const struct inverse_table *table = method->tables; table->fields; table++)
+        mf_fields_set_defaults(table->fields, (char *)c->fit->method_parameters + table->offset);
+    return STATUS_OK;
+}
+
+static bool has_field(const struct field *fields, const char *name) {
+    while (fields->name && strcmp(fields->name, name) != 0)
+        fields++;
+    return fields->name != NULL;
+}
+
+/// Choose a parameter of the method that was taken.
+static void give_to_method(struct fit_choice *c, const char *key, double value) {
+    uint64_t given = 0;
+    const struct inverse_table *table = c->fit->method->tables;
+    while (!has_field(table->fields, key))
+        table++;
+    const struct fit_place place = {"method", table->fields,
+                                    (char *)c->fit->method_parameters + table->offset, &given};
+    mf_fit_choice_give(c, &place, key, value);
+}
+
 /// How candidates for ω are simulated: from the last configuration, as long as their targets look.
-static enum status choose_rounds(struct fit_choice *c, const struct field *fields) {
+static void choose_rounds(struct fit_choice *c) {
     static const double equilibration = 0.7, apart = 0.1, windows = 1.5, min = 40;
     enum target_kind longest;
     const double window =
-        (double)mf_measurement_window(&c->read->problem.compared, c->time_step, &longest);
+        (double)mf_measurement_window(&c->fit->problem.compared, c->time_step, &longest);
     const double free = round(apart * c->crossing / c->time_step);
     const double every = fmax(1, fmin(free, window > 0 ? floor(windows * window / min) : free));
-    TRY(mf_fit_choice_give(c, "method", fields, "equilibration",
-                           fmax(50, ceil(equilibration * c->crossing / c->time_step))));
-    TRY(mf_fit_choice_give(c, "method", fields, "every", every));
-    TRY(mf_fit_choice_give(c, "method", fields, "samples",
-                           fmax(min, ceil(windows * window / every))));
-    TRY(mf_fit_choice_give(c, "method", fields, "precision", 0.1));
-    TRY(mf_fit_choice_give(c, "method", fields, "temperature_tolerance", 0.3));
-    return mf_fit_choice_give_text(c->root, "method", "warm_start", "yes");
-}
-
-/// The table of a method that has a field of that name.
-static const struct field *fields_with(const struct inverse_method *method, const char *name) {
-    for (const struct inverse_table *table = method->tables; table->fields; table++)
-        for (const struct field *field = table->fields; field->name; field++)
-            if (strcmp(field->name, name) == 0)
-                return table->fields;
-    return NULL;
+    give_to_method(c, "equilibration", fmax(50, ceil(equilibration * c->crossing / c->time_step)));
+    give_to_method(c, "every", every);
+    give_to_method(c, "samples", fmax(min, ceil(windows * window / every)));
+    give_to_method(c, "precision", 0.1);
+    give_to_method(c, "temperature_tolerance", 0.3);
+    give_to_method(c, "warm_start", true);
 }
 
 enum status mf_fit_defaults_method(struct fit_choice *c) {
-    const bool simulates = c->finds[UNKNOWN_OMEGA] || c->read->numbers > 0;
-    const bool both = simulates && c->finds[UNKNOWN_POTENTIAL] && c->read->numbers == 0;
-    const struct inverse_method *method = both               ? &mf_successive
-                                          : simulates        ? &mf_gauss_newton
-                                          : c->read->name[0] ? &mf_imc
-                                                             : &mf_automatic;
+    const bool simulates = c->finds[UNKNOWN_OMEGA] || c->fit->numbers > 0;
+    const bool both = simulates && c->finds[UNKNOWN_POTENTIAL] && c->fit->numbers == 0;
+    const struct inverse_method *method = both              ? &mf_successive
+                                          : simulates       ? &mf_gauss_newton
+                                          : c->fit->name[0] ? &mf_imc
+                                                            : &mf_automatic;
     const double particles = choose_particles(c);
-    TRY(mf_fit_choice_give_text(c->root, "method", "name", method->name));
+    TRY(mf_fit_defaults_take_method(c, method));
     if (both || !simulates) {
-        const char *of[2] = {both ? "potential_particles" : "particles",
-                             both ? "potential_precision" : "precision"};
         // States of other densities have other particles in a box of that width.
-        const bool joined = scene_has_molecules(&c->read->scene.molecules) || c->read->name[0];
+        const bool joined = scene_has_molecules(&c->fit->scene.molecules) || c->fit->name[0];
         mf_fit_choice_note(
             c,
             "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "
             "their g is known within %.2g; the target's is within %.2g",
             method->name, joined ? c->count : particles, c->precision, c->scales.noise);
         if (!joined)
-            TRY(mf_fit_choice_give(c, "method", fields_with(method, of[0]), of[0], particles));
-        TRY(mf_fit_choice_give(c, "method", fields_with(method, of[1]), of[1], c->precision));
+            give_to_method(c, both ? "potential_particles" : "particles", particles);
+        give_to_method(c, both ? "potential_precision" : "precision", c->precision);
     }
     if (!simulates)
         return STATUS_OK;
     mf_fit_choice_note(
         c, "method \"%s\": it finds %s from simulations as long as the targets' windows",
         method->name, c->finds[UNKNOWN_OMEGA] ? "omega" : "what is unknown");
-    return choose_rounds(c, fields_with(method, "equilibration"));
+    choose_rounds(c);
+    return STATUS_OK;
 }
 
 /// How many samples of each replica make the noise of g such a part of what the errors of target
@@ -236,7 +250,7 @@ static double samples_for_rdf(const struct fit_choice *c, double replicas, doubl
     static const double inefficiency = 2;
     const double wanted = part * hypot(c->scales.noise, c->precision);
     const double noise =
-        mf_fit_scales_noise_of_sample(c->rdf, &c->read->scene.setup.box, c->count, c->range);
+        mf_fit_scales_noise_of_sample(c->rdf, &c->fit->scene.setup.box, c->count, c->range);
     return inefficiency * pow(noise / wanted, 2) / replicas;
 }
 
@@ -244,7 +258,7 @@ static double samples_for_rdf(const struct fit_choice *c, double replicas, doubl
 /// of a per cent: a bead forgets its velocity in one.
 static double samples_for_temperature(const struct fit_choice *c, double replicas, double apart) {
     static const double wanted = 1.0 / 300;
-    const double degrees = c->read->scene.setup.box.dimensions * c->count;
+    const double degrees = c->fit->scene.setup.box.dimensions * c->count;
     return 2 / (degrees * wanted * wanted) / (fmin(1, apart) * replicas);
 }
 
@@ -253,28 +267,27 @@ static double what_pays(double wanted, double needed, double little, double max)
     return fmin(wanted, fmax(little, fmin(needed, max)));
 }
 
-/// What the file says of the verification, or what is chosen.
-static double given_or_chosen(const struct fit_choice *c, const char *key, int64_t given,
-                              double chosen) {
-    return mf_fit_choice_lacks(c->root, "verification", key) ? chosen : (double)given;
+struct fit_place mf_fit_defaults_verification_place(const struct fit_choice *c) {
+    return (struct fit_place){"verification", mf_verify_fields, &c->fit->verification,
+                              &c->fit->verification_given};
 }
 
-enum status mf_fit_defaults_verification(struct fit_choice *c) {
+void mf_fit_defaults_verification(struct fit_choice *c) {
     static const double apart = 0.1, equilibration = 10, min = 50, windows = 20;
     static const double max_moves = 3e8, few_moves = 1e8, exact = 0.5, enough = 1;
-    const char *path = "verification";
+    const struct fit_place place = mf_fit_defaults_verification_place(c);
+    const struct verify_parameters *chosen = &c->fit->verification;
     enum target_kind longest;
-    const struct verify_parameters *read = &c->read->verification;
-    const double time_step = read->time_step > 0 ? read->time_step : c->time_step;
-    const double replicas = given_or_chosen(c, "replicas", read->replicas, 4);
-    const double every = given_or_chosen(c, "every", read->plan.every,
-                                         fmax(1, round(apart * c->crossing / time_step)));
+    const double time_step = chosen->time_step > 0 ? chosen->time_step : c->time_step;
+    mf_fit_choice_give(c, &place, "replicas", 4);
+    mf_fit_choice_give(c, &place, "every", fmax(1, round(apart * c->crossing / time_step)));
+    const double replicas = (double)chosen->replicas, every = (double)chosen->plan.every;
     const double begin = fmax(1000, ceil(equilibration * c->crossing / time_step));
     const double window =
-        (double)mf_measurement_window(&c->read->problem.compared, time_step, &longest);
+        (double)mf_measurement_window(&c->fit->problem.compared, time_step, &longest);
     const double sample = replicas * c->count * every;
     const double looks = windows * window / every;
-    const bool counted = c->read->files.given[TARGET_RDF];
+    const bool counted = c->fit->files.given[TARGET_RDF];
     const double counts = counted ? samples_for_rdf(c, replicas, exact) : 0;
     const double wanted = fmax(counts, fmax(min, looks));
     const double needed =
@@ -289,14 +302,11 @@ enum status mf_fit_defaults_verification(struct fit_choice *c) {
                                            "of it"
                       : looks == wanted  ? "20 times as long as the targets' windows"
                                          : "the least that gives errors";
-    if (mf_fit_choice_lacks(c->root, path, "samples")) {
-        mf_fit_choice_note(c, "verification: %.0f simulations of %.0f samples at most, %s",
-                           replicas, samples, why);
-        if (replicas > 1 && mf_fit_choice_lacks(c->root, path, "end_early"))
-            TRY(mf_fit_choice_give_text(c->root, path, "end_early", "yes"));
-    }
-    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "replicas", replicas));
-    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "equilibration", begin));
-    TRY(mf_fit_choice_give(c, path, mf_verify_fields, "every", every));
-    return mf_fit_choice_give(c, path, mf_verify_fields, "samples", samples);
+    mf_fit_choice_give(c, &place, "equilibration", begin);
+    if (!mf_fit_choice_give(c, &place, "samples", samples))
+        return;
+    mf_fit_choice_note(c, "verification: %.0f simulations of %.0f samples at most, %s", replicas,
+                       samples, why);
+    if (replicas > 1)
+        mf_fit_choice_give(c, &place, "end_early", true);
 }

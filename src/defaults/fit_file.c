@@ -4,11 +4,8 @@
 #include "base/digest.h"
 #include "base/memory.h"
 #include "base/names.h"
-#include "defaults/fit_base.h"
-#include "defaults/fit_check.h"
 #include "defaults/fit_defaults.h"
 #include "defaults/fit_densities.h"
-#include "defaults/fit_friction.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
 #include "defaults/methods.h"
@@ -81,9 +78,9 @@ static void refuse_removed(const struct inverse_method *method, struct json_obje
             mf_json_retired(object, removed[k].key, removed[k].now, removed[k].reason);
 }
 
-static enum status read_method(struct fit_file *fit, struct json_object *root, bool required) {
+static enum status read_method(struct fit_file *fit, struct json_object *root) {
     const char **names;
-    struct json_object object = mf_json_child_of(root, "method", required, "name");
+    struct json_object object = mf_json_child_of(root, "method", false, "name");
     if (object.item == NULL)
         return STATUS_OK;
     TRY(mf_names_collect(mf_methods, NULL, &names));
@@ -123,47 +120,49 @@ static void refuse_foreign(struct json_object *scene, int unknown) {
 }
 
 /// The scene leaves out what "unknowns" names.
-static enum status read_scene(struct fit_file *fit, struct json_object *root, bool chosen) {
+static enum status read_scene(struct fit_file *fit, struct json_object *root) {
     struct json_object scene = mf_json_child(root, "scene", true);
     if (scene.item == NULL)
         return STATUS_OK;
     struct scene_fitted fitted;
     const int unknown = mf_fit_unknowns_left_out(root);
     mf_fit_unknowns_groups(root, &scene, &fitted);
-    fitted.count_follows = !chosen && mf_json_is_member(&scene, "density");
+    fitted.count_follows = mf_json_is_member(&scene, "density");
     TRY(mf_scene_read(&fit->scene, &scene, unknown, &fitted));
     refuse_foreign(&scene, unknown);
     mf_json_finish(&scene);
     return STATUS_OK;
 }
 
+static struct target_scene target_scene_of(const struct fit_file *fit) {
+    const struct simulation_setup *setup = &fit->scene.setup;
+    return (struct target_scene){&setup->box, &setup->composition,
+                                 mf_molecules_find(setup->interaction, setup->interactions),
+                                 &fit->scene.units};
+}
+
 /// @param[in] leader  the first of several states, whose units all have; NULL of itself
-/// @param[in] chosen  what may be left to the program has been put in
 static enum status read_root(struct fit_file *fit, struct json_object *root,
-                             const struct fit_file *leader, bool chosen) {
-    int friction; // what it means is put into the document
+                             const struct fit_file *leader) {
     mf_json_fields(root, mf_heading_fields, &fit->heading);
-    mf_json_fields(root, mf_fit_friction_fields, &friction);
+    mf_json_fields(root, mf_fit_friction_fields, &fit->friction);
     struct json_object scene = mf_json_child(root, "scene", false);
     mf_units_read_document(root, &scene);
     if (leader && mf_units_are_physical(&leader->scene.units))
         mf_json_set_units(root->document, &leader->scene.units);
     // Before what its units convert.
-    TRY(read_scene(fit, root, chosen));
-    const struct simulation_setup *setup = &fit->scene.setup;
-    const struct target_scene about = {&setup->box, &setup->composition,
-                                       mf_molecules_find(setup->interaction, setup->interactions),
-                                       &fit->scene.units};
+    TRY(read_scene(fit, root));
+    const struct target_scene about = target_scene_of(fit);
     TRY(mf_target_files_read(&fit->files, root, &about));
     TRY(mf_fit_unknowns_read(fit, root));
     TRY(mf_fit_densities_read(fit, root));
-    TRY(read_method(fit, root, chosen));
+    TRY(read_method(fit, root));
     struct json_object core = mf_json_child(root, "core", false);
-    mf_json_fields(&core, mf_fit_core_fields, &fit->core);
+    fit->core_given = mf_json_fields(&core, mf_fit_core_fields, &fit->core);
     if (core.item)
         mf_json_finish(&core);
     struct json_object verification = mf_json_child(root, "verification", false);
-    mf_json_fields(&verification, mf_verify_fields, &fit->verification);
+    fit->verification_given = mf_json_fields(&verification, mf_verify_fields, &fit->verification);
     if (verification.item)
         mf_json_finish(&verification);
     mf_json_finish(root);
@@ -234,7 +233,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
 
 /// Which state of which file is read.
 struct reading {
-    const char *file;
+    const char *file, *text;
     const struct run_options *options;
     size_t state;
     const struct fit_file *leader; ///< the first state, in whose units and range the others are
@@ -242,68 +241,52 @@ struct reading {
     struct json_document *document;
 };
 
-/// What the document says, which must be read whole, as what was chosen for it.
-static enum status read_whole(struct fit_file *fit, const struct reading *reading, bool chosen) {
-    struct json_object root = mf_json_root(reading->document);
-    mf_json_set_units(reading->document, &(struct units){0});
-    TRY(mf_json_collect_files(reading->document, &fit->inputs));
-    TRY(read_root(fit, &root, reading->leader, chosen));
+/// Laws for the groups that are constraints: of all states those of the first.
+static enum status take_constraints(struct fit_file *fit, const struct reading *reading,
+                                    const struct json_object *root) {
+    if (reading->leader)
+        fit->constraints = reading->leader->constraints;
+    else if (!mf_fit_unknowns_name_groups(root))
+        mf_fit_constraints_find(fit);
+    if (fit->constraints.count == 0)
+        return STATUS_OK;
+    TRY(mf_fit_constraints_apply(fit));
     state_problem(fit, reading->options);
+    fit->unknown[UNKNOWN_BONDED].wanted = fit->problem.bonded > 0;
     return STATUS_OK;
 }
 
-/// Read the document once more, with what was put into it for what it lacks.
-static enum status read_again(struct fit_file *fit, const struct reading *reading, bool chosen) {
-    struct fit_file kept = {.constraints = fit->constraints, .choices = fit->choices};
-    memcpy(kept.name, fit->name, sizeof kept.name);
-    mf_fit_file_clear(fit);
-    *fit = kept;
-    return read_whole(fit, reading, chosen);
-}
-
-/// Laws for the groups that are constraints.
-static enum status write_constraints(struct fit_file *fit, const struct reading *reading) {
-    struct json_object root = mf_json_root(reading->document);
-    if (reading->leader)
-        fit->constraints = reading->leader->constraints; // laws are of all states
-    else if (!mf_fit_unknowns_name_groups(&root))
-        mf_fit_constraints_find(fit, &fit->constraints);
-    if (fit->constraints.count == 0)
-        return STATUS_OK;
-    TRY(mf_fit_constraints_write(&fit->constraints, fit, &root));
-    mf_fit_constraints_print(&fit->constraints, fit, &fit->choices);
-    return read_again(fit, reading, false);
-}
-
-/// The family of ω.
-static enum status write_friction(struct fit_file *fit, const struct reading *reading,
-                                  bool chosen) {
-    struct json_object root = mf_json_root(reading->document);
-    bool changed;
-    TRY(mf_fit_friction_put(&root, &changed));
-    return changed ? read_again(fit, reading, chosen) : STATUS_OK;
+/// What follows from the choices.
+static enum status complete(struct fit_file *fit, struct json_object *root) {
+    struct json_object scene = mf_json_child(root, "scene", true);
+    TRY(mf_scene_complete(&fit->scene, &scene, fit->integrator));
+    if (fit->method == NULL)
+        mf_json_child(root, "method", true);
+    const struct target_scene about = target_scene_of(fit);
+    TRY(mf_target_files_complete(&fit->files, root, &about));
+    return mf_fit_unknowns_complete(fit, root);
 }
 
 static enum status read_state(struct fit_file *fit, struct reading *reading) {
     struct json_document *document = reading->document;
+    TRY(mf_json_add(document, reading->options->words, reading->options->word_count));
     TRY(mf_fit_states_take(document, reading->file, reading->state, fit->name, &reading->states));
     struct json_object root = mf_json_root(document);
     TRY(mf_heading_check_run(&root, reading->file));
-    const bool chooses = mf_fit_defaults_wanted(&root);
-    TRY(read_whole(fit, reading, !chooses));
-    if (mf_json_fault_count(document) == 0)
-        TRY(write_constraints(fit, reading));
-    if (mf_json_fault_count(document) == 0)
-        TRY(write_friction(fit, reading, !chooses));
-    if (!chooses || mf_json_fault_count(document) > 0)
+    TRY(mf_json_collect_files(document, &fit->inputs));
+    TRY(read_root(fit, &root, reading->leader));
+    state_problem(fit, reading->options);
+    if (mf_json_fault_count(document) > 0)
         return STATUS_OK;
-    TRY(mf_fit_defaults_choose(fit, reading->leader, &root, &fit->choices));
-    return read_again(fit, reading, true);
+    TRY(take_constraints(fit, reading, &root));
+    TRY(mf_fit_defaults_choose(fit, reading->leader));
+    TRY(complete(fit, &root));
+    state_problem(fit, reading->options);
+    return STATUS_OK;
 }
 
 static enum status parse_state(struct fit_file *fit, struct reading *reading) {
-    *fit = (struct fit_file){0};
-    TRY(mf_json_open(&reading->document, reading->file));
+    TRY(mf_json_open_text(&reading->document, reading->file, reading->text));
     return mf_json_close(reading->document, read_state(fit, reading));
 }
 
@@ -314,7 +297,9 @@ static enum status parse_others(struct fit_file *fit, const struct reading *firs
     TRY_ARRAY(fit->other, first->states - 1);
     while (fit->others < first->states - 1) {
         struct fit_file *other = &fit->other[fit->others++];
-        struct reading reading = {first->file, first->options, fit->others, fit, 0, NULL};
+        struct reading reading = *first;
+        reading.state = fit->others;
+        reading.leader = fit;
         TRY(mf_fit_states_mark(other, parse_state(other, &reading)));
         for (size_t k = 0; k < other->inputs.count; k++)
             TRY(mf_input_files_add(&fit->inputs, other->inputs.file[k].name));
@@ -322,9 +307,13 @@ static enum status parse_others(struct fit_file *fit, const struct reading *firs
     return STATUS_OK;
 }
 
-static enum status parse(struct fit_file *fit, const char *file,
-                         const struct run_options *options) {
-    struct reading reading = {file, options, 0, NULL, 0, NULL};
+enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
+                              const struct run_options *options) {
+    *fit = (struct fit_file){0};
+    OWNED char *text = NULL;
+    size_t length;
+    TRY(mf_text_file_read(file, &text, &length));
+    struct reading reading = {.file = file, .text = text, .options = options};
     TRY(mf_fit_states_mark(fit, parse_state(fit, &reading)));
     TRY(parse_others(fit, &reading));
     TRY(mf_fit_states_widen(fit, file));
@@ -334,23 +323,19 @@ static enum status parse(struct fit_file *fit, const char *file,
     return STATUS_OK;
 }
 
-enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
-                              const struct run_options *options) {
-    mf_text_file_keep();
-    const enum status status = parse(fit, file, options);
-    mf_text_file_forget();
-    return status;
-}
-
-enum status mf_fit_file_read(struct fit_file *fit, const char *file,
-                             const struct run_options *options) {
-    TRY(mf_fit_file_parse(fit, file, options));
+enum status mf_fit_file_check(struct fit_file *fit, const char *file) {
     TRY(mf_fit_states_check(fit, file));
     for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
         struct fit_file *state = mf_fit_states_at(fit, s);
         TRY(mf_fit_states_mark(state, mf_fit_check(state, file)));
     }
     return mf_fit_base_find(fit);
+}
+
+enum status mf_fit_file_read(struct fit_file *fit, const char *file,
+                             const struct run_options *options) {
+    TRY(mf_fit_file_parse(fit, file, options));
+    return mf_fit_file_check(fit, file);
 }
 
 void mf_fit_file_clear(struct fit_file *fit) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "defaults/fit_numbers.h"
+#include "defaults/fit_unknowns.h"
 
 #include "base/memory.h"
 #include "base/nearest.h"
@@ -209,7 +209,7 @@ void mf_fit_numbers_lend(const struct scene *scene, struct inverse_problem *prob
     problem->density_energy = (struct inverse_law){densities, many_body->energy};
 }
 
-static void list(struct entries *entries, const struct scene *scene) {
+static void add_all(struct entries *entries, const struct scene *scene) {
     static const char converts[] = "it converts results, and changes none";
     static const char places[] = "it sets the number of particles or where they start";
     const struct simulation_setup *setup = &scene->setup;
@@ -239,6 +239,13 @@ static void list(struct entries *entries, const struct scene *scene) {
     add(entries, "particles.", mf_attributes_fields, "it is not the same for all particles",
         &nowhere, NULL);
     add(entries, "units.", mf_units_fields, converts, &nowhere, NULL);
+}
+
+static enum status list(struct entries *entries, const struct scene *scene) {
+    add_all(entries, scene);
+    TRY_ARRAY(entries->entry, entries->count);
+    add_all(entries, scene);
+    return STATUS_OK;
 }
 
 /// The group of a path that is an unknown curve, or NULL.
@@ -323,13 +330,17 @@ static void read_one(struct json_object *numbers, const struct entry *entry,
     number->place = entry->place;
     number->part = entry->part;
     number->offset = entry->offset;
-    if (mf_json_fault_count(numbers->document) > faults)
-        return;
-    check_range(&object, entry->field, number);
-    if (isnan(number->start))
-        number->start = entry->value;
-    if (!(number->start >= number->minimum && number->start <= number->maximum))
-        number->start = 0.5 * (number->minimum + number->maximum);
+    if (mf_json_fault_count(numbers->document) == faults)
+        check_range(&object, entry->field, number);
+}
+
+/// That of a path, or NULL.
+static const struct entry *find(const struct entries *entries, const char *path) {
+    const struct entry *found = NULL;
+    for (size_t k = 0; k < entries->count; k++)
+        if (strcmp(entries->entry[k].path, path) == 0)
+            found = &entries->entry[k];
+    return found;
 }
 
 static enum status read_all(struct json_object *numbers, const struct scene *scene,
@@ -337,10 +348,7 @@ static enum status read_all(struct json_object *numbers, const struct scene *sce
                             size_t *count) {
     const char *path;
     for (size_t n = 0; (path = mf_json_key(numbers, n)); n++) {
-        const struct entry *found = NULL;
-        for (size_t k = 0; k < entries->count; k++)
-            if (strcmp(entries->entry[k].path, path) == 0)
-                found = &entries->entry[k];
+        const struct entry *const found = find(entries, path);
         if (found == NULL)
             TRY(fault_unknown(numbers, path, entries, scene));
         else if (found->fixed)
@@ -411,9 +419,7 @@ enum status mf_fit_numbers_read(struct json_object *unknowns, const struct scene
     struct json_object numbers = mf_json_child(unknowns, "numbers", false);
     if (numbers.item == NULL || faulty)
         return STATUS_OK;
-    list(&entries, scene);
-    NEW_ARRAY(entries.entry, entries.count);
-    list(&entries, scene);
+    CHECK(list(&entries, scene));
     CHECK(read_all(&numbers, scene, &entries, number, count));
     if (*count == 0 && mf_json_fault_count(unknowns->document) == 0)
         mf_json_fault(unknowns, "numbers", "names none");
@@ -425,17 +431,17 @@ done:
     return status;
 }
 
-void mf_fit_numbers_write(const struct inverse_number *number, size_t count,
-                          struct json_writer *writer) {
-    if (count == 0)
-        return;
-    mf_json_begin(writer, "numbers");
-    for (size_t n = 0; n < count; n++) {
-        mf_json_begin(writer, number[n].name);
-        struct field fields[NUMBERS_FIELDS];
-        mf_numbers_fields_of(number[n].unit, fields);
-        mf_json_write_fields(writer, fields, &number[n]);
-        mf_json_end(writer);
+enum status mf_fit_numbers_complete(const struct scene *scene, struct inverse_number *number,
+                                    size_t count) {
+    struct entries entries = {0};
+    const enum status status = list(&entries, scene);
+    for (size_t n = 0; n < count && status == STATUS_OK; n++) {
+        double *const start = &number[n].start;
+        if (isnan(*start))
+            *start = find(&entries, number[n].name)->value;
+        if (!(*start >= number[n].minimum && *start <= number[n].maximum))
+            *start = 0.5 * (number[n].minimum + number[n].maximum);
     }
-    mf_json_end(writer);
+    mf_memory_free(entries.entry);
+    return status;
 }

@@ -2,7 +2,6 @@
 #include "defaults/fit_unknowns.h"
 
 #include "base/names.h"
-#include "defaults/fit_base.h"
 #include "observe/weighted_density.h"
 
 #include <math.h>
@@ -148,31 +147,23 @@ static void read_groups(struct fit_file *fit, struct json_object *root,
     }
 }
 
-static const struct field *unknown_fields(enum unknown_kind kind) {
-    return kind == UNKNOWN_POTENTIAL ? mf_inverse_potential_fields : mf_inverse_omega_fields;
-}
-
 /// Coefficients of a curve if the file does not say how many.
 static const int64_t coefficients_of_curve[] = {[INVERSE_CURVE_BEZIER] = 100,
                                                 [INVERSE_CURVE_BSPLINE] = 12,
                                                 [INVERSE_CURVE_POWER] = INVERSE_PARAMETERS};
 
 /// "fixed": {"exponent": 1}, what is not to be found of a formula.
-static void read_fixed(struct unknown_parameters *p, struct json_object *object) {
-    struct json_object fixed = mf_json_child(object, "fixed", false);
-    mf_json_fields(&fixed, mf_inverse_fixed_fields, p->fixed);
-    if (fixed.item == NULL)
-        return;
-    mf_json_finish(&fixed);
-    if (p->shape != INVERSE_CURVE_POWER)
-        mf_json_fault(object, "fixed", "only \"curve\": \"power\" has parameters to hold fixed");
-    else if (mf_inverse_free_parameters(p->fixed) == 0)
-        mf_json_fault(object, "fixed",
-                      "with all of its parameters fixed nothing is left to be found");
+static void check_fixed(const struct unknown_parameters *p, struct json_object *object) {
+    const int free = mf_inverse_free_parameters(p->fixed);
     const double inner = p->fixed[INVERSE_INNER_CUTOFF];
     const double length = mf_json_factor(object, "lambda");
+    if (free < INVERSE_PARAMETERS && p->shape != INVERSE_CURVE_POWER)
+        mf_json_fault(object, "fixed", "only \"curve\": \"power\" has parameters to hold fixed");
+    else if (free == 0)
+        mf_json_fault(object, "fixed",
+                      "with all of its parameters fixed nothing is left to be found");
     if (inner < p->inner_cutoff || inner >= p->cutoff)
-        mf_json_fault(&fixed, "inner_cutoff",
+        mf_json_fault(object, "fixed.inner_cutoff",
                       "%g is not between the friction weight's cutoffs, %g and %g", length * inner,
                       length * p->inner_cutoff, length * p->cutoff);
 }
@@ -191,19 +182,16 @@ static void check_coefficients(struct unknown_parameters *p, struct json_object 
                       parameters);
 }
 
-static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
-                                struct json_object *object, const struct composition *composition,
-                                const struct units *units) {
-    const struct curve_family *const *laws =
-        kind == UNKNOWN_POTENTIAL ? mf_curve_potentials : mf_curve_omegas;
-    mf_json_fields(object, unknown_fields(kind), &unknown->parameters);
+/// What follows from what was said of an unknown, by the file or by choices.
+static void complete_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
+                             struct json_object *object) {
     struct unknown_parameters *p = &unknown->parameters;
     const double length = mf_json_factor(object, "lambda");
     const double unit =
         mf_json_factor(object, kind == UNKNOWN_POTENTIAL ? "k_B T_0" : "sqrt(mu/tau)");
-    mf_fields_set_defaults(mf_inverse_fixed_fields, p->fixed);
+    *p = unknown->said;
     if (unknown_is_omega(kind))
-        read_fixed(p, object);
+        check_fixed(p, object);
     if (kind != UNKNOWN_OMEGA && p->shape == INVERSE_CURVE_POWER)
         mf_json_fault(object, "curve",
                       "\"power\" is for \"unknowns.omega\"; here the scene has the law, and "
@@ -211,12 +199,6 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     check_coefficients(p, object);
     if (p->coefficients == 0)
         p->coefficients = coefficients_of_curve[p->shape];
-    if (object->item == NULL) {
-        mf_fit_base_check(unknown, object);
-        return STATUS_OK;
-    }
-    mf_json_retired(object, "spacing", "even", "coefficients are spread evenly; leave it out");
-    TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     mf_fit_base_check(unknown, object);
     if (p->maximum <= p->minimum)
         mf_json_fault(object, "maximum", "%g is not above the minimum %g", unit * p->maximum,
@@ -224,8 +206,27 @@ static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind k
     if (unknown_is_omega(kind) && p->cutoff <= p->inner_cutoff)
         mf_json_fault(object, "cutoff", "%g is not above the inner cutoff %g", length * p->cutoff,
                       length * p->inner_cutoff);
+}
+
+static enum status read_unknown(struct fit_unknown *unknown, enum unknown_kind kind,
+                                struct json_object *object, const struct composition *composition,
+                                const struct units *units) {
+    const struct curve_family *const *laws =
+        kind == UNKNOWN_POTENTIAL ? mf_curve_potentials : mf_curve_omegas;
+    struct json_object fixed = {.document = object->document};
+    unknown->fields =
+        kind == UNKNOWN_POTENTIAL ? mf_inverse_potential_fields : mf_inverse_omega_fields;
+    unknown->given = mf_json_fields(object, unknown->fields, &unknown->said);
+    if (unknown_is_omega(kind))
+        fixed = mf_json_child(object, "fixed", false);
+    mf_json_fields(&fixed, mf_inverse_fixed_fields, unknown->said.fixed);
+    if (fixed.item)
+        mf_json_finish(&fixed);
+    mf_json_retired(object, "spacing", "even", "coefficients are spread evenly; leave it out");
+    TRY(mf_scene_law_read(&unknown->start, object, "start", laws, composition, units));
     TRY(mf_scene_law_read(&unknown->truth, object, "truth", laws, composition, units));
-    mf_json_finish(object);
+    if (object->item)
+        mf_json_finish(object);
     return STATUS_OK;
 }
 
@@ -254,11 +255,19 @@ static void check_modes(const struct fit_file *fit, struct json_object *memory) 
 static enum status read_curve(struct fit_file *fit, struct json_object *parent, const char *name,
                               enum unknown_kind kind) {
     const struct composition alike = mf_composition_of_one(fit->scene.setup.placement.count);
+    struct fit_unknown *unknown = &fit->unknown[kind];
     struct json_object child = mf_json_child(parent, name, false);
-    fit->unknown[kind].wanted = child.item != NULL;
-    return read_unknown(&fit->unknown[kind], kind, &child,
-                        unknown_is_omega(kind) ? &alike : &fit->scene.setup.composition,
-                        &fit->scene.units);
+    unknown->wanted = child.item != NULL;
+    TRY(read_unknown(unknown, kind, &child,
+                     unknown_is_omega(kind) ? &alike : &fit->scene.setup.composition,
+                     &fit->scene.units));
+    if (kind == UNKNOWN_OMEGA && unknown->wanted && !mf_fit_friction_take(unknown, fit->friction))
+        mf_json_fault(&child, "curve",
+                      "\"%s\" is not the power law that \"friction\" asks for: leave one of them "
+                      "out",
+                      unknown->fields->choices[unknown->said.shape]);
+    complete_unknown(unknown, kind, &child);
+    return STATUS_OK;
 }
 
 static enum status read_curves(struct fit_file *fit, struct json_object *unknowns) {
@@ -277,23 +286,36 @@ static enum status read_curves(struct fit_file *fit, struct json_object *unknown
 enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root) {
     struct json_object object = mf_json_child(root, "unknowns", false);
     size_t wanted = 0;
+    fit->says_unknowns = mf_json_is_member(root, "unknowns");
     TRY(read_curves(fit, &object));
     TRY(mf_fit_numbers_read(&object, &fit->scene, fit->number, &fit->numbers));
     read_groups(fit, root, &object);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         wanted += fit->unknown[kind].wanted;
-    if (object.item) {
-        const size_t faults = mf_json_fault_count(root->document);
-        mf_json_finish(&object);
-        if (wanted == 0 && !mf_json_has(&object, "numbers") &&
-            mf_json_fault_count(root->document) == faults)
-            mf_json_fault(root, "unknowns",
-                          "needs \"potential\", \"omega\", \"numbers\", or "
-                          "\"bonds\"" BONDED_LIST_BEYOND_BONDS(AND));
-    } else {
+    if (object.item == NULL) {
         fit->unknown[UNKNOWN_POTENTIAL].wanted = has_potential(root);
+        return STATUS_OK;
     }
+    const size_t faults = mf_json_fault_count(root->document);
+    mf_json_finish(&object);
+    if (wanted == 0 && !mf_json_has(&object, "numbers") &&
+        mf_json_fault_count(root->document) == faults)
+        mf_json_fault(root, "unknowns",
+                      "needs \"potential\", \"omega\", \"numbers\", or "
+                      "\"bonds\"" BONDED_LIST_BEYOND_BONDS(AND));
+    if (fit->friction != FIT_FRICTION_FREE && !fit->unknown[UNKNOWN_OMEGA].wanted)
+        mf_json_fault(root, "friction", "there is no \"omega\" among the \"unknowns\"");
     return STATUS_OK;
+}
+
+enum status mf_fit_unknowns_complete(struct fit_file *fit, struct json_object *root) {
+    struct json_object object = mf_json_child(root, "unknowns", false);
+    for (size_t k = 0; k < ALONE; k++) {
+        struct json_object child =
+            mf_json_child(&object, mf_inverse_unknown_names[alone[k]], false);
+        complete_unknown(&fit->unknown[alone[k]], alone[k], &child);
+    }
+    return mf_fit_numbers_complete(&fit->scene, fit->number, fit->numbers);
 }
 
 static void write_fixed(const struct unknown_parameters *p, struct json_writer *writer) {
@@ -313,7 +335,7 @@ static void write_unknown(const struct fit_file *fit, int kind, const char *name
     if (!unknown->wanted)
         return;
     mf_json_begin(writer, name);
-    mf_json_write_fields(writer, unknown_fields(kind), &unknown->parameters);
+    mf_json_write_fields(writer, unknown->fields, &unknown->parameters);
     write_fixed(&unknown->parameters, writer);
     mf_scene_law_write(&unknown->start, &fit->scene.setup.composition, writer, "start");
     mf_scene_law_write(&unknown->truth, &fit->scene.setup.composition, writer, "truth");
@@ -352,12 +374,54 @@ static void write_groups(const struct fit_file *fit, struct json_writer *writer)
     }
 }
 
+/// With the values that they begin with.
+static void write_numbers(const struct inverse_number *number, size_t count,
+                          struct json_writer *writer) {
+    if (count == 0)
+        return;
+    mf_json_begin(writer, "numbers");
+    for (size_t n = 0; n < count; n++) {
+        mf_json_begin(writer, number[n].name);
+        struct field fields[NUMBERS_FIELDS];
+        mf_numbers_fields_of(number[n].unit, fields);
+        mf_json_write_fields(writer, fields, &number[n]);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
 void mf_fit_unknowns_write(const struct fit_file *fit, struct json_writer *writer) {
     mf_json_begin(writer, "unknowns");
     for (size_t k = 0; k < ALONE; k++)
         write_unknown(fit, alone[k], mf_inverse_unknown_names[alone[k]], writer);
     write_memory(fit, writer);
     write_groups(fit, writer);
-    mf_fit_numbers_write(fit->number, fit->numbers, writer);
+    write_numbers(fit->number, fit->numbers, writer);
     mf_json_end(writer);
+}
+
+static const char *const families[] = {"free", "exportable", "linear", NULL};
+
+const struct field mf_fit_friction_fields[] = {
+    {"friction", FIELD_CHOICE, .choices = families, .initial = FIT_FRICTION_FREE, .unit = "",
+     .help = "as --friction of fit"},
+    FIELD_END,
+};
+
+bool mf_fit_friction_take(struct fit_unknown *omega, enum fit_friction family) {
+    struct unknown_parameters *said = &omega->said;
+    if (family == FIT_FRICTION_FREE)
+        return true;
+    if (fit_unknown_says(omega, "curve") && said->shape != INVERSE_CURVE_POWER)
+        return false;
+    said->shape = INVERSE_CURVE_POWER;
+    if (!fit_unknown_says(omega, "inner_cutoff"))
+        said->inner_cutoff = 0;
+    omega->given |=
+        mf_fields_bit(omega->fields, "curve") | mf_fields_bit(omega->fields, "inner_cutoff");
+    if (isnan(said->fixed[INVERSE_INNER_CUTOFF]))
+        said->fixed[INVERSE_INNER_CUTOFF] = 0;
+    if (family == FIT_FRICTION_LINEAR && isnan(said->fixed[INVERSE_EXPONENT]))
+        said->fixed[INVERSE_EXPONENT] = 1;
+    return true;
 }

@@ -27,3 +27,16 @@ enum status mf_checkpoint_load_span(const char *file, uint64_t digest, size_t nu
 /// Digest of a file's bytes (base/digest.h), with which that of the settings begins: what they only
 /// name, a target or a table, is added to it.
 enum status mf_checkpoint_digest(const char *file, uint64_t *digest) MUST_USE;
+
+/// When to save: not more often than wanted, and so seldom that it takes a hundredth of a run's
+/// time at most, however large the state or slow the disk. Seconds are those of the run.
+struct checkpoint_pace {
+    double interval; ///< at least so long between two [s]
+    double next;     ///< when it is time again
+};
+
+static inline void mf_checkpoint_pace_saved(struct checkpoint_pace *pace, double begun,
+                                            double ended) {
+    const double work = 99 * (ended - begun);
+    pace->next = ended + (work > pace->interval ? work : pace->interval);
+}

@@ -3,7 +3,6 @@
 
 #include "base/memory.h"
 #include "io/data_line.h"
-#include "io/output.h"
 #include "io/text_file.h"
 
 #include <math.h>
@@ -270,11 +269,44 @@ static void read_comments(struct data_table *table, const struct layout *layout,
                          table->columns + layout->labels, table->header);
 }
 
+/// A table in the memory of a caller, whose rows are its lines.
+static enum status copy_table(struct data_table *table, const struct memory_file *from,
+                              const struct layout *layout) {
+    if (from->columns < layout->columns || layout->flagged)
+        return mf_status_fail(
+            STATUS_BAD_INPUT, "%s: %zu columns of numbers, at least %zu%s are needed", from->name,
+            from->columns, layout->columns, layout->flagged ? " and one of flags" : "");
+    table->rows = from->rows;
+    table->columns = from->columns;
+    TRY_ARRAY(table->values, table->rows * table->columns);
+    TRY_ARRAY(table->line, table->rows);
+    TRY_ARRAY(table->header, 1);
+    TRY_ARRAY(table->comments, 1);
+    memcpy(table->values, from->values, table->rows * table->columns * sizeof *table->values);
+    for (size_t k = 0; k < table->rows; k++)
+        table->line[k] = k + 1;
+    for (size_t n = 0; n < table->rows * table->columns; n++) {
+        const size_t column = n % table->columns;
+        const double value = table->values[n];
+        if (isfinite(value) || (isnan(value) && column >= layout->columns) ||
+            (value == INFINITY && layout->core && column == 1))
+            continue;
+        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: \"%g\" is not a finite number",
+                              from->name, n / table->columns + 1, column + 1, value);
+    }
+    return STATUS_OK;
+}
+
 static enum status read_table(struct data_table *table, const char *file, struct layout *layout) {
     enum status status = STATUS_OK;
     char *text = NULL;
     size_t length = 0, again = 0;
+    const struct memory_file *in_memory = mf_text_file_find_memory_file(file);
     *table = (struct data_table){0};
+    if (in_memory && in_memory->values) {
+        status = copy_table(table, in_memory, layout);
+        goto done;
+    }
     CHECK(mf_text_file_read(file, &text, &length));
     table->lammps = mf_data_lammps_strip(text, &again);
     if (again > 0)
@@ -403,45 +435,4 @@ enum status mf_data_table_check_increasing(const struct data_table *table, const
                                   file, line, column + 1, value, before, table->line[row - 1]);
     }
     return STATUS_OK;
-}
-
-static void write_comment(FILE *stream, const char *comment) {
-    struct data_line line = mf_data_line_first(comment);
-    do
-        fprintf(stream, "# %.*s\n", (int)(line.end - line.begin), line.begin);
-    while (mf_data_line_next(&line) && *line.begin);
-}
-
-static void write_header(FILE *stream, const struct data_column *columns, size_t count) {
-    fputs("# ", stream);
-    for (size_t column = 0; column < count; column++)
-        fprintf(stream, "%s%s", column ? "\t" : "", columns[column].name);
-    fputc('\n', stream);
-}
-
-static void write_row(FILE *stream, const struct data_column *columns, size_t count, size_t row) {
-    for (size_t column = 0; column < count; column++) {
-        const char *format = columns[column].format ? columns[column].format : "%.10g";
-        const double value = columns[column].values[row];
-        if (column > 0)
-            fputc('\t', stream);
-        if (isnan(value))
-            fputs("nan", stream); // printf would add the sign that a NaN happens to carry
-        else
-            fprintf(stream, format, value);
-    }
-    fputc('\n', stream);
-}
-
-enum status mf_data_table_write(const char *file, const char *comment,
-                                const struct data_column *columns, size_t column_count,
-                                size_t rows) {
-    struct output output;
-    TRY(mf_output_open(&output, file));
-    if (comment)
-        write_comment(output.stream, comment);
-    write_header(output.stream, columns, column_count);
-    for (size_t row = 0; row < rows; row++)
-        write_row(output.stream, columns, column_count, row);
-    return mf_output_commit(&output);
 }

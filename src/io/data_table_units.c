@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 #include "io/data_table.h"
+#include "io/output.h"
 #include "io/units_text.h"
 
 #include <math.h>
@@ -194,6 +195,47 @@ done:
     mf_memory_free(all.name);
     mf_memory_free(all.values);
     return status;
+}
+
+static void write_comment(FILE *stream, const char *comment) {
+    struct data_line line = mf_data_line_first(comment);
+    do
+        fprintf(stream, "# %.*s\n", (int)(line.end - line.begin), line.begin);
+    while (mf_data_line_next(&line) && *line.begin);
+}
+
+static void write_header(FILE *stream, const struct data_column *columns, size_t count) {
+    fputs("# ", stream);
+    for (size_t column = 0; column < count; column++)
+        fprintf(stream, "%s%s", column ? "\t" : "", columns[column].name);
+    fputc('\n', stream);
+}
+
+static void write_row(FILE *stream, const struct data_column *columns, size_t count, size_t row) {
+    for (size_t column = 0; column < count; column++) {
+        const char *format = columns[column].format ? columns[column].format : "%.10g";
+        const double value = columns[column].values[row];
+        if (column > 0)
+            fputc('\t', stream);
+        if (isnan(value))
+            fputs("nan", stream); // printf would add the sign that a NaN happens to carry
+        else
+            fprintf(stream, format, value);
+    }
+    fputc('\n', stream);
+}
+
+enum status mf_data_table_write(const char *file, const char *comment,
+                                const struct data_column *columns, size_t column_count,
+                                size_t rows) {
+    struct output output;
+    TRY(mf_output_open(&output, file));
+    if (comment)
+        write_comment(output.stream, comment);
+    write_header(output.stream, columns, column_count);
+    for (size_t row = 0; row < rows; row++)
+        write_row(output.stream, columns, column_count, row);
+    return mf_output_commit(&output);
 }
 
 enum status mf_data_table_write_in(const char *file, const struct units *units, const char *comment,

@@ -5,7 +5,6 @@
 #include "base/nearest.h"
 #include "base/visible.h"
 #include "io/json_document.h"
-#include "io/json_parse.h"
 #include "io/output.h"
 #include "io/text_file.h"
 
@@ -170,6 +169,56 @@ enum status mf_json_take_variant(struct json_document *document, const char *key
     }
     cJSON_Delete(variants);
     return status;
+}
+
+/// The item at a path, whose objects are made if they are missing.
+static cJSON *find_place(cJSON *root, const char *path) {
+    char name[JSON_PATH_SIZE], *rest;
+    cJSON *place = root;
+    snprintf(name, sizeof name, "%s", path ? path : "");
+    for (char *key = strtok_r(name, ".", &rest); place && key; key = strtok_r(NULL, ".", &rest)) {
+        cJSON *const inner = cJSON_GetObjectItemCaseSensitive(place, key);
+        place = inner || !cJSON_IsObject(place) ? inner : cJSON_AddObjectToObject(place, key);
+    }
+    return place;
+}
+
+static enum status make_item(const struct json_word *word, cJSON **item) {
+    if (word->json) {
+        TRY(mf_json_parse(word->key, word->json, item));
+        return mf_json_item_check(word->key, *item);
+    }
+    *item = word->text    ? cJSON_CreateString(word->text)
+            : word->count ? cJSON_CreateDoubleArray(word->values, (int)word->count)
+                          : cJSON_CreateNumber(word->value);
+    return *item ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+static enum status add_word(struct json_document *document, const struct json_word *word) {
+    cJSON *const place = find_place(document->root, word->object), *item = NULL;
+    if (!cJSON_IsObject(place)) // its reader says what should stand there
+        return STATUS_OK;
+    if (cJSON_GetObjectItemCaseSensitive(place, word->key))
+        return mf_status_fail(STATUS_BAD_INPUT, "--%s: %s has %s%s%s", word->key, document->file,
+                              word->object ? word->object : "", word->object ? "." : "", word->key);
+    enum status status = make_item(word, &item);
+    if (status == STATUS_OK && !cJSON_AddItemToObject(place, word->key, item))
+        status = STATUS_NO_MEMORY;
+    if (status != STATUS_OK) {
+        cJSON_Delete(item);
+        return status;
+    }
+    struct json_object added = view(document, item);
+    join_path(added.path, sizeof added.path, word->object ? word->object : "", word->key);
+    check_keys(&added);
+    return STATUS_OK;
+}
+
+enum status mf_json_add(struct json_document *document, const struct json_word *words,
+                        size_t count) {
+    for (size_t k = 0; k < count; k++)
+        TRY(add_word(document, &words[k]));
+    return STATUS_OK;
 }
 
 struct json_object mf_json_root(struct json_document *document) {

@@ -53,6 +53,23 @@ void mf_json_set_units(struct json_document *document, const struct units *units
 /// In which units the numbers of the object are.
 const struct units *mf_json_units(const struct json_object *object);
 
+/// What is said beside a file, by the command line or by a caller of the library: one member of one
+/// of its objects.
+struct json_word {
+    const char *object; ///< path, "scene.particles", of what is made if it is missing; NULL: root
+    const char *key;
+    const char *text, *json; ///< a text, or a value in JSON; both NULL: numbers
+    size_t count;            ///< of `values`; 0: it is the number `value`
+    double value;
+    const double *values;
+};
+
+/// Put words into the document, before its root is viewed. Fails: NO_MEMORY; BAD_INPUT if the file
+/// says one of them, too, or if there is no value in the JSON. Tested: test_json_words,
+/// cli/test_fit_target, test_library.
+enum status mf_json_add(struct json_document *document, const struct json_word *words,
+                        size_t count) MUST_USE;
+
 /// Make the document what member number n of its object `key` makes of it: that object goes, and
 /// the member is merged into the rest (RFC 7396, JSON Merge Patch). Before its root is viewed.
 /// Fails: NO_MEMORY; BAD_INPUT if the member is no object. Tested: test_json.
@@ -107,7 +124,8 @@ int mf_json_numbers(const struct json_object *object, const char *key, double *v
 /// the folder of the document's file unless absolute. An absent object gives the defaults and no
 /// faults: that it is missing was mf_json_child's to say. null, as mf_json_write_number writes what
 /// is not known, is allowed for numbers whose default is NAN.
-void mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
+/// Returns the fields that the object has, as bits of mf_fields_bit. Tested: test_json_words.
+uint64_t mf_json_fields(struct json_object *object, const struct field *fields, void *parameters);
 
 /// Of a law: lengths and times that `object` leaves to their defaults are faults where the program
 /// chooses the unit of length (units.chosen), which follows the density, so that the law would,
@@ -142,3 +160,31 @@ size_t mf_json_fault_count(const struct json_document *document);
 /// Free the document. `status` is what became of reading it: returned if it is NO_MEMORY, and if
 /// there was no fault. Else BAD_INPUT with all faults, one a line.
 enum status mf_json_close(struct json_document *document, enum status status) MUST_USE;
+
+/// @name Lists. Tested: test_json
+/// The list of `count` finite numbers at `key`; false and a fault if there is none.
+/// @param[out] values  shape [count]
+bool mf_json_list_numbers(struct json_object *object, const char *key, double *values,
+                          size_t count);
+
+/// The list of `count` texts at `key`; false and a fault if there is none.
+/// @param[out] texts  shape [count], borrowed from the document
+bool mf_json_list_texts(struct json_object *object, const char *key, const char **texts,
+                        size_t count);
+
+/// The list of `rows` lists of `width` whole numbers each at `key`; false and a fault if there is
+/// none.
+/// @param[out] values  shape [rows, width]
+bool mf_json_list_rows(struct json_object *object, const char *key, int *values, size_t rows,
+                       size_t width);
+
+/// What each of the `rows` objects of the list at `key` has at `member`: a list of `width` finite
+/// numbers, or for a width of 0 a number. False without a fault if the first object has no such
+/// member, with one if another has not.
+/// @param[out] values  shape [rows, width], or [rows]
+bool mf_json_list_members(struct json_object *object, const char *key, const char *member,
+                          double *values, size_t rows, size_t width);
+
+/// Text number `n` of the list at `key`, or the text there as number 0; NULL if there is none.
+/// Counts as nothing, and faults are left to the reader. Tested: test_units.
+const char *mf_json_list_text(const struct json_object *object, const char *key, size_t n);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/json_parse.h"
+#include "io/json_document.h"
 
 #include "io/json.h"
 #include "io/text_file.h"

@@ -297,34 +297,3 @@ enum status mf_json_write_stream(const struct json_writer *writer, FILE *stream,
     return written ? STATUS_OK
                    : mf_status_fail(STATUS_IO, "cannot write %s: %s", name, strerror(error));
 }
-
-/// Move the members of `from` that `into` lacks; false if the memory does not hold them.
-static bool supply(cJSON *into, cJSON *from) {
-    cJSON *member = from->child;
-    while (member) {
-        cJSON *next = member->next;
-        cJSON *known = cJSON_GetObjectItemCaseSensitive(into, member->string);
-        if (cJSON_IsObject(known) && cJSON_IsObject(member)) {
-            if (!supply(known, member))
-                return false;
-        } else if (known == NULL) {
-            cJSON_DetachItemViaPointer(from, member);
-            if (!cJSON_AddItemToObject(into, member->string, member))
-                return false;
-        }
-        member = next;
-    }
-    return true;
-}
-
-enum status mf_json_write_into(const struct json_writer *writer, const struct json_object *object) {
-    char *text;
-    TRY(print(writer, "what a file leaves out", &text));
-    cJSON *tree = cJSON_Parse(text);
-    cJSON_free(text);
-    // A view is constant, its document is not.
-    const bool supplied = tree && supply((cJSON *)(uintptr_t)object->item, tree);
-    cJSON_Delete(tree);
-    return supplied ? STATUS_OK
-                    : mf_status_fail(STATUS_NO_MEMORY, "no memory for what a file leaves out");
-}

@@ -16,7 +16,6 @@
 #include <stdint.h>
 #include <stdio.h>
 
-struct json_object;
 struct json_writer;
 
 struct json_writer *mf_json_writer_create(void);      ///< NULL if there is no memory
@@ -58,12 +57,6 @@ void mf_json_write_rows(struct json_writer *writer, const char *key, const int *
 /// from any folder.
 void mf_json_write_fields(struct json_writer *writer, const struct field *fields,
                           const void *parameters);
-
-/// Add to an object of a document that is being read what the tree has and the object has not, at
-/// all depths; what the object has stays. Before its keys are read. Fails: NO_MEMORY; IO as
-/// mf_json_write. Tested: test_json_write.
-enum status mf_json_write_into(const struct json_writer *writer,
-                               const struct json_object *object) MUST_USE;
 
 /// Write the tree to `file`, whole or not at all (output.h).
 enum status mf_json_write(const struct json_writer *writer, const char *file) MUST_USE;

@@ -81,60 +81,18 @@ void mf_text_file_set_memory_files(const struct memory_file *memory_files, size_
     memory_file_count = count;
 }
 
-/// Texts that were read from files since mf_text_file_keep.
-static _Thread_local struct kept {
-    struct kept *next;
-    char *text, *name; ///< the name in the memory of the text
-} * kept;
-static _Thread_local int keeping; ///< how many do
-
-static const char *find_memory_file(const char *file) {
+const struct memory_file *mf_text_file_find_memory_file(const char *name) {
     for (size_t k = 0; k < memory_file_count; k++)
-        if (strcmp(memory_file_list[k].name, file) == 0)
-            return memory_file_list[k].text;
-    for (const struct kept *k = kept; k; k = k->next)
-        if (strcmp(k->name, file) == 0)
-            return k->text;
+        if (strcmp(memory_file_list[k].name, name) == 0)
+            return &memory_file_list[k];
     return NULL;
 }
 
-void mf_text_file_keep(void) {
-    keeping++;
-}
-
-void mf_text_file_forget(void) {
-    if (--keeping > 0)
-        return;
-    while (kept) {
-        struct kept *first = kept;
-        kept = first->next;
-        mf_memory_free(first->text);
-        mf_memory_free(first);
-    }
-}
-
-static enum status keep(const char *file, const char *text, size_t length) {
-    if (keeping == 0)
-        return STATUS_OK;
-    OWNED struct kept *own = mf_memory_zeroed(1, sizeof *own);
-    char *copy = mf_memory_zeroed(length + strlen(file) + 2, 1);
-    if (own == NULL || copy == NULL) {
-        mf_memory_free(copy);
-        return STATUS_NO_MEMORY;
-    }
-    memcpy(copy, text, length + 1);
-    *own = (struct kept){kept, copy, strcpy(copy + length + 1, file)};
-    kept = own;
-    own = NULL;
-    return STATUS_OK;
-}
-
-static enum status copy_memory_file(const char *file, const char *memory_files, char **text,
-                                    size_t *length) {
-    const size_t bytes = strlen(memory_files);
-    TRY(check_is_text(file, memory_files, bytes));
+static enum status copy_text(const char *file, const char *from, char **text, size_t *length) {
+    const size_t bytes = strlen(from);
+    TRY(check_is_text(file, from, bytes));
     TRY_ARRAY(*text, bytes + 1);
-    memcpy(*text, memory_files, bytes + 1);
+    memcpy(*text, from, bytes + 1);
     end_lines(*text, bytes);
     *length = bytes;
     return STATUS_OK;
@@ -144,9 +102,9 @@ enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     enum status status = STATUS_OK;
     *text = NULL;
     *length = 0;
-    const char *memory_files = find_memory_file(file);
-    if (memory_files)
-        return copy_memory_file(file, memory_files, text, length);
+    const struct memory_file *in_memory = mf_text_file_find_memory_file(file);
+    if (in_memory && in_memory->text)
+        return copy_text(file, in_memory->text, text, length);
     FILE *stream;
     struct stat about;
     TRY(mf_input_open(&stream, file));
@@ -156,7 +114,6 @@ enum status mf_text_file_read(const char *file, char **text, size_t *length) {
     drop_byte_order_mark(*text, length);
     CHECK(check_is_text(file, *text, *length));
     end_lines(*text, *length);
-    CHECK(keep(file, *text, *length));
 done:
     fclose(stream);
     if (status != STATUS_OK) {

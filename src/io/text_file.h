@@ -17,20 +17,21 @@
 /// NUL byte, so that the text ends where the file ends. Tested: test_data_table, test_json.
 enum status mf_text_file_read(const char *file, char **text, size_t *length) MUST_USE;
 
-/// Between these calls, which may be nested, mf_text_file_read of this thread opens each file once:
-/// what is read in several passes is the same in all, and may be a pipe. Tested: test_run_files.
-void mf_text_file_keep(void);
-void mf_text_file_forget(void);
-
 /// An in-memory file.
 struct memory_file {
     const char *name; ///< of the file, exactly as the reader will ask for it
-    const char *text;
+    const char *text; ///< NULL: it is a table of these numbers
+    size_t rows, columns;
+    const double *values; ///< shape [rows, columns]
 };
 
-/// Until the next call, mf_text_file_read of this thread finds these texts in place of files of
-/// their names, for callers who have no files. Borrowed; NULL and 0 end it. Tested: test_library.
+/// Until the next call, mf_text_file_read of this thread finds these texts, and mf_data_table_read
+/// these tables, in place of files of their names, for callers who have no files. Borrowed; NULL
+/// and 0 end it. Tested: test_library.
 void mf_text_file_set_memory_files(const struct memory_file *memory_files, size_t count);
+
+/// That of a name, or NULL.
+const struct memory_file *mf_text_file_find_memory_file(const char *name);
 
 /// Where a byte of a text stands; both count from 1, columns in characters of UTF-8.
 struct text_place {

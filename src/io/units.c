@@ -2,7 +2,6 @@
 #include "io/units.h"
 
 #include "io/json.h"
-#include "io/json_list.h"
 
 #include <math.h>
 

@@ -4,15 +4,13 @@
 #include "problem/parametrisation.h"
 #include "base/memory.h"
 #include "base/status.h"
-#include "defaults/fit_base.h"
-#include "defaults/fit_check.h"
+#include "defaults/fit_unknowns.h"
 #include "library/guard.h"
 #include "library/memory_files.h"
-#include "library/scene_text.h"
+#include "library/scene_words.h"
 #include "matching/population.h"
 #include "mesofit/fit.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,15 +28,16 @@ struct mesofit_fit {
     void *context;
 };
 
-// The text of a run file, with tables in memory ---------------------------------------------------
+// What the caller says, as words of a run file with tables in memory ------------------------------
 
-enum { FIT_TEXT_TABLES = 3 };
+enum { FIT_TABLES = 3, FIT_WORDS = SCENE_WORDS + 11 };
 
-struct fit_text {
-    char *text;
-    struct mesofit_table table[FIT_TEXT_TABLES];
+struct fit_words {
+    struct json_word word[FIT_WORDS];
+    size_t words;
+    struct mesofit_table table[FIT_TABLES];
     size_t tables;
-    double *values[FIT_TEXT_TABLES]; ///< of the tables
+    double *values[FIT_TABLES]; ///< of the tables
 };
 
 struct mesofit_fit_options mesofit_fit_options_default(void) {
@@ -47,7 +46,7 @@ struct mesofit_fit_options mesofit_fit_options_default(void) {
 }
 
 /// A new table, whose values are zero.
-static enum status add_table(struct fit_text *run, const char *name, size_t rows, size_t columns,
+static enum status add_table(struct fit_words *run, const char *name, size_t rows, size_t columns,
                              double **values) {
     enum status status = STATUS_OK;
     NEW_ARRAY(*values, rows * columns);
@@ -57,7 +56,7 @@ done:
     return status;
 }
 
-static enum status add_rdf(struct fit_text *run, const struct mesofit_fit_options *options) {
+static enum status add_rdf(struct fit_words *run, const struct mesofit_fit_options *options) {
     const size_t columns = options->rdf.error ? 3 : 2;
     double *values;
     if (options->rdf.r == NULL || options->rdf.g == NULL)
@@ -73,7 +72,7 @@ static enum status add_rdf(struct fit_text *run, const struct mesofit_fit_option
 }
 
 /// Times, then a column for each bin.
-static enum status add_matrix(struct fit_text *run, const char *name,
+static enum status add_matrix(struct fit_words *run, const char *name,
                               const struct mesofit_fit_options *options, const double *from) {
     const size_t times = options->etd.times, bins = options->etd.bins, columns = bins + 1;
     double *values;
@@ -85,7 +84,7 @@ static enum status add_matrix(struct fit_text *run, const char *name,
     return STATUS_OK;
 }
 
-static enum status add_tables(struct fit_text *run, const struct mesofit_fit_options *options) {
+static enum status add_tables(struct fit_words *run, const struct mesofit_fit_options *options) {
     if (options->rdf.count > 0)
         TRY(add_rdf(run, options));
     if (options->etd.times == 0)
@@ -97,68 +96,53 @@ static enum status add_tables(struct fit_text *run, const struct mesofit_fit_opt
                               : STATUS_OK;
 }
 
-static void write_target(const struct mesofit_fit_options *options, FILE *stream) {
-    const char *separator = "";
-    fputs("\"target\": {", stream);
-    if (options->rdf.count > 0) {
-        fputs("\"rdf\": {\"file\": \"rdf\"}", stream);
-        separator = ", ";
-    }
-    if (options->etd.times > 0)
-        fprintf(stream,
-                "%s\"etd\": {\"file\": \"etd\"%s, \"r_minimum\": %.17g, \"r_maximum\": %.17g}",
-                separator, options->etd.error ? ", \"error_file\": \"etd_error\"" : "",
-                options->etd.r_minimum, options->etd.r_maximum);
-    fputs("}, ", stream);
+static void add(struct fit_words *run, const struct json_word *word) {
+    run->word[run->words++] = *word;
 }
 
-static void write_unknowns(const struct mesofit_fit_options *options, FILE *stream) {
-    fputs("\"unknowns\": {", stream);
+static void add_text(struct fit_words *run, const char *object, const char *key, const char *text) {
+    add(run, &(struct json_word){.object = object, .key = key, .text = text});
+}
+
+static void add_json(struct fit_words *run, const char *object, const char *key, const char *json) {
+    add(run, &(struct json_word){.object = object, .key = key, .json = json ? json : "{}"});
+}
+
+static void add_target(struct fit_words *run, const struct mesofit_fit_options *options) {
+    static const char etd[] = "target.etd";
+    add_json(run, NULL, "target", NULL);
+    if (options->rdf.count > 0)
+        add_text(run, "target.rdf", "file", "rdf");
+    if (options->etd.times == 0)
+        return;
+    add_text(run, etd, "file", "etd");
+    if (options->etd.error)
+        add_text(run, etd, "error_file", "etd_error");
+    add(run,
+        &(struct json_word){.object = etd, .key = "r_minimum", .value = options->etd.r_minimum});
+    add(run,
+        &(struct json_word){.object = etd, .key = "r_maximum", .value = options->etd.r_maximum});
+}
+
+static enum status find_words(struct fit_words *run, const struct mesofit_fit_options *options) {
+    *run = (struct fit_words){0};
+    TRY(add_tables(run, options));
+    run->words = mf_scene_words(&options->scene, true, run->word);
+    add_target(run, options);
+    add_json(run, NULL, "unknowns", NULL);
     if (options->find_potential)
-        fprintf(stream, "\"potential\": %s", options->potential ? options->potential : "{}");
+        add_json(run, "unknowns", "potential", options->potential);
     if (options->find_friction)
-        fprintf(stream, "%s\"omega\": %s", options->find_potential ? ", " : "",
-                options->friction ? options->friction : "{}");
-    fputs("}, ", stream);
-}
-
-/// The name, then the members of the object `settings`.
-static enum status write_method(const struct mesofit_fit_options *options, FILE *stream) {
-    static const char blanks[] = " \t\r\n";
-    const char *settings = options->settings ? options->settings : "{}";
-    settings += strspn(settings, blanks);
-    if (*settings != '{')
-        return mf_status_fail(STATUS_BAD_INPUT, "settings: \"%s\" is not a JSON object", settings);
-    const char *first = settings + 1 + strspn(settings + 1, blanks);
-    fprintf(stream, "\"method\": {\"name\": \"%s\"%s%s", options->method ? options->method : "",
-            *first == '}' ? "" : ", ", first);
+        add_json(run, "unknowns", "omega", options->friction);
+    add_json(run, NULL, "method", options->settings);
+    add_text(run, "method", "name", options->method ? options->method : "");
     return STATUS_OK;
 }
 
-static enum status write(struct fit_text *run, const struct mesofit_fit_options *options) {
-    size_t length;
-    *run = (struct fit_text){0};
-    TRY(add_tables(run, options));
-    FILE *stream = open_memstream(&run->text, &length);
-    if (stream == NULL)
-        return mf_status_fail(STATUS_NO_MEMORY, "no memory for a fit's text");
-    fprintf(stream, "{\"seed\": %" PRIu64 ", ", options->scene.seed);
-    write_target(options, stream);
-    write_unknowns(options, stream);
-    fputs("\"scene\": {", stream);
-    mf_scene_text_write(&options->scene, stream);
-    fputs("}, ", stream);
-    const enum status status = write_method(options, stream);
-    fputc('}', stream);
-    fclose(stream);
-    return status;
-}
-
-static void clear(struct fit_text *run) {
-    free(run->text);
+static void clear(struct fit_words *run) {
     for (size_t k = 0; k < run->tables; k++)
         mf_memory_free(run->values[k]);
-    *run = (struct fit_text){0};
+    *run = (struct fit_words){0};
 }
 
 // Fits --------------------------------------------------------------------------------------------
@@ -189,7 +173,7 @@ done:
 
 static enum status add_own_laws(struct mesofit_fit *fit, const struct mesofit_scene *own) {
     struct scene *scene = &fit->file.scene;
-    TRY(mf_scene_text_add_own(own, scene));
+    TRY(mf_scene_words_add_own(own, scene));
     fit->file.problem.scene.potential = scene->setup.potential;
     fit->file.problem.scene.omega = scene->setup.omega;
     return STATUS_OK;
@@ -197,11 +181,13 @@ static enum status add_own_laws(struct mesofit_fit *fit, const struct mesofit_sc
 
 /// Make a fit of a run file, or of an in-memory file.
 static enum status open_run(struct mesofit_fit **made, const char *file,
-                            const struct mesofit_scene *own, int threads,
-                            mesofit_fit_progress *progress, void *context) {
+                            const struct fit_words *words, const struct mesofit_scene *own,
+                            int threads, mesofit_fit_progress *progress, void *context) {
     enum status status = STATUS_OK;
     struct mesofit_fit *fit = NULL;
-    const struct run_options options = {.threads = threads > 0 ? threads : 1};
+    const struct run_options options = {.threads = threads > 0 ? threads : 1,
+                                        .words = words ? words->word : NULL,
+                                        .word_count = words ? words->words : 0};
     NEW_ARRAY(fit, 1);
     fit->progress = progress;
     fit->context = context;
@@ -213,8 +199,7 @@ static enum status open_run(struct mesofit_fit **made, const char *file,
                              file));
     if (own)
         CHECK(add_own_laws(fit, own));
-    CHECK(mf_fit_check(&fit->file, file));
-    CHECK(mf_fit_base_find(&fit->file));
+    CHECK(mf_fit_file_check(&fit->file, file));
     CHECK(begin(fit));
 done:
     if (status != STATUS_OK) {
@@ -229,7 +214,7 @@ struct mesofit_fit *mesofit_fit_open(const char *file, int threads, mesofit_fit_
                                      void *context) {
     struct mesofit_fit *fit = NULL;
     mf_guard_enter();
-    mf_guard_return(open_run(&fit, file, NULL, threads, progress, context));
+    mf_guard_return(open_run(&fit, file, NULL, NULL, threads, progress, context));
     return fit;
 }
 
@@ -239,9 +224,9 @@ struct mesofit_fit *mesofit_fit_parse(const char *text, const struct mesofit_tab
     struct mesofit_fit *fit = NULL;
     struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_memory_files_begin_one(&memory_files, in_memory, text, tables, table_count) ==
-        STATUS_OK) {
-        if (open_run(&fit, in_memory, NULL, threads, progress, context) != STATUS_OK)
+    if (mf_memory_files_begin(&memory_files, &(const struct mesofit_text){in_memory, text}, 1,
+                              tables, table_count) == STATUS_OK) {
+        if (open_run(&fit, in_memory, NULL, NULL, threads, progress, context) != STATUS_OK)
             fit = NULL;
         mf_memory_files_end(&memory_files);
     }
@@ -251,14 +236,14 @@ struct mesofit_fit *mesofit_fit_parse(const char *text, const struct mesofit_tab
 
 struct mesofit_fit *mesofit_fit_create(const struct mesofit_fit_options *options) {
     struct mesofit_fit *fit = NULL;
-    struct fit_text run;
+    struct fit_words run;
     struct memory_files memory_files;
     mf_guard_enter();
-    if (write(&run, options) == STATUS_OK &&
-        mf_memory_files_begin_one(&memory_files, in_memory, run.text, run.table, run.tables) ==
-            STATUS_OK) {
-        if (open_run(&fit, in_memory, &options->scene, options->scene.threads, options->progress,
-                     options->context) != STATUS_OK)
+    if (find_words(&run, options) == STATUS_OK &&
+        mf_memory_files_begin(&memory_files, &(const struct mesofit_text){in_memory, "{}"}, 1,
+                              run.table, run.tables) == STATUS_OK) {
+        if (open_run(&fit, in_memory, &run, &options->scene, options->scene.threads,
+                     options->progress, options->context) != STATUS_OK)
             fit = NULL;
         mf_memory_files_end(&memory_files);
     }

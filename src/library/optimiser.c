@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "io/json.h"
 #include "library/guard.h"
-#include "library/memory_files.h"
 #include "optimise/optimiser.h"
 
 struct mesofit_optimiser {
@@ -16,20 +15,13 @@ struct mesofit_optimiser {
 };
 
 static enum status read_settings(const struct optimiser *kind, const char *text, void *parameters) {
-    static const char in_memory[] = "settings";
     struct json_document *document;
-    struct memory_files memory_files;
-    TRY(mf_memory_files_begin_one(&memory_files, in_memory, text ? text : "{}", NULL, 0));
-    enum status status = mf_json_open(&document, in_memory);
-    if (status == STATUS_OK) {
-        struct json_object root = mf_json_root(document);
-        for (size_t k = 0; kind->tables[k]; k++)
-            mf_json_fields(&root, kind->tables[k], parameters);
-        mf_json_finish(&root);
-        status = mf_json_close(document, STATUS_OK);
-    }
-    mf_memory_files_end(&memory_files);
-    return status;
+    TRY(mf_json_open_text(&document, "settings", text ? text : "{}"));
+    struct json_object root = mf_json_root(document);
+    for (size_t k = 0; kind->tables[k]; k++)
+        mf_json_fields(&root, kind->tables[k], parameters);
+    mf_json_finish(&root);
+    return mf_json_close(document, STATUS_OK);
 }
 
 static enum status create(struct mesofit_optimiser *optimiser, const char *name,

@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 #include "library/guard.h"
 #include "library/memory_files.h"
-#include "library/scene_text.h"
+#include "library/scene_words.h"
 #include "observe/measure.h"
 #include "observe/rdf_observable.h"
 #include "observe/thermodynamics.h"
@@ -28,10 +28,9 @@ struct mesofit_simulation {
 /// Name of a text that is no file, in messages.
 static const char in_memory[] = "scene";
 
-static enum status read_scene(struct scene *scene, const char *file) {
-    struct json_document *document;
+/// What the root of a scene says.
+static enum status read_root(struct scene *scene, struct json_document *document) {
     struct heading heading;
-    TRY(mf_json_open(&document, file));
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_heading_fields, &heading);
     const enum status status = mf_scene_read(scene, &root, SCENE_FITS_NOTHING, NULL);
@@ -42,6 +41,20 @@ static enum status read_scene(struct scene *scene, const char *file) {
     mf_json_finish(&root);
     scene->setup.seed = heading.seed;
     scene->setup.threads = 1;
+    return status;
+}
+
+/// A scene of a file, or, with `own`, of the caller.
+static enum status read_scene(struct scene *scene, const char *file,
+                              const struct mesofit_scene *own) {
+    struct json_document *document;
+    struct json_word words[SCENE_WORDS];
+    enum status status =
+        own ? mf_json_open_text(&document, in_memory, "{}") : mf_json_open(&document, file);
+    if (own && status == STATUS_OK)
+        status = mf_json_add(document, words, mf_scene_words(own, false, words));
+    if (status == STATUS_OK)
+        status = read_root(scene, document);
     return mf_json_close(document, status);
 }
 
@@ -51,15 +64,15 @@ static enum status begin(struct mesofit_simulation *simulation) {
                               &simulation->scene.start);
 }
 
-/// Make a simulation of a file, or of an in-memory file.
+/// Make a simulation of a file, or of a scene of the caller's.
 static enum status open_scene(struct mesofit_simulation **simulation, const char *file,
                               const struct mesofit_scene *own) {
     enum status status = STATUS_OK;
     NEW_ARRAY(*simulation, 1);
-    CHECK(read_scene(&(*simulation)->scene, file));
+    CHECK(read_scene(&(*simulation)->scene, file, own));
     if (own) {
         (*simulation)->scene.setup.threads = own->threads;
-        CHECK(mf_scene_text_add_own(own, &(*simulation)->scene));
+        CHECK(mf_scene_words_add_own(own, &(*simulation)->scene));
     }
     CHECK(begin(*simulation));
     CHECK(mf_simulation_add_interaction(
@@ -85,8 +98,8 @@ mesofit_simulation_parse(const char *text, const struct mesofit_table *tables, s
     struct mesofit_simulation *simulation = NULL;
     struct memory_files memory_files;
     mf_guard_enter();
-    if (mf_memory_files_begin_one(&memory_files, in_memory, text, tables, table_count) ==
-        STATUS_OK) {
+    if (mf_memory_files_begin(&memory_files, &(const struct mesofit_text){in_memory, text}, 1,
+                              tables, table_count) == STATUS_OK) {
         if (open_scene(&simulation, in_memory, NULL) != STATUS_OK)
             simulation = NULL;
         mf_memory_files_end(&memory_files);
@@ -95,31 +108,10 @@ mesofit_simulation_parse(const char *text, const struct mesofit_table *tables, s
     return simulation;
 }
 
-static char *write_text(const struct mesofit_scene *scene) {
-    char *text = NULL;
-    size_t length;
-    FILE *stream = open_memstream(&text, &length);
-    if (stream == NULL)
-        return NULL;
-    fprintf(stream, "{\"seed\": %llu, ", (unsigned long long)scene->seed);
-    mf_scene_text_write(scene, stream);
-    fputc('}', stream);
-    fclose(stream);
-    return text;
-}
-
 struct mesofit_simulation *mesofit_simulation_create(const struct mesofit_scene *scene) {
     struct mesofit_simulation *simulation = NULL;
-    struct memory_files memory_files;
     mf_guard_enter();
-    char *text = write_text(scene);
-    if (mf_memory_files_begin_one(&memory_files, in_memory, text, NULL, 0) == STATUS_OK) {
-        if (open_scene(&simulation, in_memory, scene) != STATUS_OK)
-            simulation = NULL;
-        mf_memory_files_end(&memory_files);
-    }
-    free(text);
-    mf_guard_leave();
+    mf_guard_return(open_scene(&simulation, NULL, scene));
     return simulation;
 }
 

@@ -2,7 +2,6 @@
 #include "live/live_routes.h"
 
 #include "io/json.h"
-#include "io/text_file.h"
 #include "live/live_assets.h"
 #include "live/live_folder.h"
 
@@ -196,14 +195,10 @@ static const struct field request_fields[] = {
 };
 
 static enum status read_wish(const struct live_request *request, struct wished *wished) {
-    const struct memory_file memory_files = {"the wish", request->body};
     struct json_document *document;
     if (strlen(request->body) != request->size)
         return mf_status_fail(STATUS_BAD_INPUT, "the request has a NUL byte");
-    mf_text_file_set_memory_files(&memory_files, 1);
-    const enum status status = mf_json_open(&document, memory_files.name);
-    mf_text_file_set_memory_files(NULL, 0);
-    TRY(status);
+    TRY(mf_json_open_text(&document, "the wish", request->body));
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, request_fields, wished);
     mf_json_finish(&root);

@@ -33,7 +33,7 @@ static bool is_folder(const char *path) {
 
 /// The file's own text stands for it, or what the page has made of it.
 static enum status run(struct session *session, const struct live_order *order) {
-    const struct memory_file memory_files = {order->file, order->text};
+    const struct memory_file memory_files = {.name = order->file, .text = order->text};
     struct run_options options = session->options->run;
     bool is_fit;
     TRY(mf_live_view_is_fit(order->file, order->text, &is_fit));

@@ -121,12 +121,8 @@ enum status mf_live_view_order(struct live_view *view, struct live_order *order)
 }
 
 enum status mf_live_view_is_fit(const char *file, const char *text, bool *is_fit) {
-    const struct memory_file memory_files = {file, text};
     struct json_document *document;
-    mf_text_file_set_memory_files(&memory_files, 1);
-    const enum status status = mf_json_open(&document, file);
-    mf_text_file_set_memory_files(NULL, 0);
-    TRY(status);
+    TRY(mf_json_open_text(&document, file, text));
     struct json_object root = mf_json_root(document);
     *is_fit = mf_json_has(&root, "target") || mf_json_has(&root, "states");
     return mf_json_close(document, STATUS_OK);

@@ -9,7 +9,7 @@
 #include "observe/motion.h"
 #include "observe/stationary.h"
 #include "problem/group_kind.h"
-#include "problem/verify_known.h"
+#include "problem/verify_agreement.h"
 
 #include <math.h>
 

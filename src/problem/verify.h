@@ -4,7 +4,6 @@
 
 #include "observe/thermodynamics.h"
 #include "problem/verify_agreement.h"
-#include "problem/verify_equilibrium.h"
 #include "problem/verify_step.h"
 
 struct verify_parameters {

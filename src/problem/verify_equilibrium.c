@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "problem/verify_equilibrium.h"
+#include "problem/verify_agreement.h"
 
 #include "base/memory.h"
 #include "observe/rdf_observable.h"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "problem/verify_known.h"
+#include "problem/verify_agreement.h"
 
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"
 #include "observe/thermodynamics.h"
-#include "problem/verify_equilibrium.h"
 
 #include <math.h>
 

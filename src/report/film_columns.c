@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "io/input.h"
-#include "io/json_list.h"
+#include "io/json.h"
 
 #include <stdbool.h>
 #include <stdint.h>

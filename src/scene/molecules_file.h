@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/scene_molecules.h"
+#include "trajectory/structure.h"
 
 /// Read the "molecules" of a JSON file, which may be a scene or used.json: whatever else it holds
 /// but the types of "particles" is left alone; or those of a GROMACS topology (.top, .itp), of a
@@ -24,3 +25,23 @@ enum status mf_molecules_file_masses(double mass[COMPOSITION_MAX_TYPES],
 
 /// Whether a file lists atoms, as all of these but JSON and maps do: by its name.
 bool mf_molecules_file_lists(const char *file);
+
+/// A file that lists all atoms of a trajectory, or those of one molecule, tells what each atom is:
+/// its type, its mass, and the molecule that it belongs to.
+struct molecules_listing {
+    struct structure structure; ///< the trajectory's, with what the listing knows; no atoms: none
+    size_t repeats;             ///< how often it is listed
+};
+
+/// Read the molecules' file as a listing, where it is one: a topology of GROMACS, a data file or a
+/// template of LAMMPS, a PSF, a GSD. Its atoms must be called as those of the trajectory, where
+/// both have names; of fewer atoms it must fit several times, by names. Otherwise there is none.
+/// @param[in,out] molecules  each kind of it is there so often more
+/// @param[in] units  of a file that says none
+/// @param[in] mapped  atoms keep names and molecules: they become beads by a map
+/// Fails: IO, NO_MEMORY; BAD_INPUT for a damaged file. Tested: cli/test_measure_listings.
+enum status mf_molecules_listing_read(struct molecules_listing *listing, struct topology *molecules,
+                                      const char *file, const char *units,
+                                      const struct structure *of, bool mapped) MUST_USE;
+
+void mf_molecules_listing_clear(struct molecules_listing *listing);

@@ -4,9 +4,11 @@
 
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 struct caller_observables;
+struct json_word;
 struct watcher;
 
 /// How much a run says. Warnings are of its results, which nobody may miss in a batch job.
@@ -25,8 +27,10 @@ struct run_options {
     uint64_t seed; ///< --seed, instead of the input file's
     enum run_words quiet;
     bool resume;
-    bool force;              ///< replace the results that are in the folder
-    bool no_figures;         ///< none are drawn in the folder
+    bool force;                    ///< replace the results that are in the folder
+    bool no_figures;               ///< none are drawn in the folder
+    const struct json_word *words; ///< about the run file (io/json.h), shape [word_count]; borrowed
+    size_t word_count;
     const atomic_bool *stop; ///< ends the run as Ctrl-C does, or NULL; borrowed
     /// What a simulation measures besides (observe/caller_observable.h), or NULL; borrowed.
     const struct caller_observables *callers;

@@ -3,8 +3,7 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
-#include "base/names.h"
-#include "scene/scene_particles.h"
+#include "scene/scene_parts.h"
 
 #include <math.h>
 
@@ -78,7 +77,8 @@ static void check_omega(const struct scene *scene, struct json_object *object) {
 
 static void read_top(struct scene *scene, struct json_object *object) {
     struct top top;
-    mf_json_fields(object, mf_scene_fields, &top);
+    const uint64_t given = mf_json_fields(object, mf_scene_fields, &top);
+    scene->given.time_step = given & mf_fields_bit(mf_scene_fields, "time_step");
     struct simulation_setup *setup = &scene->setup;
     setup->box.dimensions = (int)top.dimensions;
     for (int d = 0; d < 3; d++)
@@ -90,127 +90,6 @@ static void read_top(struct scene *scene, struct json_object *object) {
     setup->temperature_limit = top.temperature_limit;
     setup->precision = top.precision;
     setup->threads = 1;
-}
-
-NAMED_RECORD(struct integrator);
-
-static void fault_too_few_particles(const struct scene *scene, struct json_object *object) {
-    struct json_object particles = mf_json_child(object, "particles", false);
-    if (particles.item && mf_json_has(&particles, "count") &&
-        mf_json_fault_count(object->document) == 0)
-        mf_json_fault(&particles, "count", "%lld is out of range; allowed: 2 to 1e+08",
-                      (long long)scene->setup.placement.count);
-}
-
-/// Orientations are of the plane, and of those whom somebody turns; a file may bring them along.
-static void check_orientation(const struct scene *scene, struct json_object *object) {
-    const struct attributes_source *source = &scene->setup.attribute[ATTRIBUTES_ORIENTATION];
-    const struct integrator *integrator = scene->setup.integrator;
-    if (source->ranges == 0)
-        return;
-    if (scene->setup.box.dimensions != 2)
-        mf_json_fault(object, "particles.orientation",
-                      "orientations are of two dimensions, not %d; leave it out",
-                      scene->setup.box.dimensions);
-    else if (integrator->orientation_mobility == NULL && source->column == NULL)
-        mf_json_fault(object, "particles.orientation",
-                      "%s turns no orientations; leave it out, or use \"%s\"", integrator->name,
-                      mf_brownian.name);
-}
-
-/// Moves of Monte Carlo know pairs and molecules, in the precision of single moves.
-static void check_moves(const struct scene *scene, struct json_object *object) {
-    const struct simulation_setup *setup = &scene->setup;
-    for (int k = 0; k < setup->interactions; k++) {
-        const struct interaction *kind = setup->interaction[k].kind;
-        char key[64];
-        snprintf(key, sizeof key, "interactions.%s", kind->name);
-        if (kind == &mf_many_body)
-            snprintf(key, sizeof key, "many_body");
-        if (kind != &mf_molecules)
-            mf_json_fault(
-                object, key,
-                "\"%s\" moves by the energy of pairs and molecules alone; leave it out, or "
-                "take another integrator",
-                setup->integrator->name);
-    }
-    if (setup->precision == PAIR_DOUBLE)
-        mf_json_fault(object, "precision",
-                      "\"%s\" computes its moves in mixed precision; leave it out",
-                      setup->integrator->name);
-}
-
-/// Masses of 1 are the unit; particles do not have them where these would not be read, or cost
-/// time in a sweep of the friction.
-static void check_masses(struct scene *scene, struct json_object *object, bool remembers) {
-    const struct integrator *integrator = scene->setup.integrator;
-    struct attributes_source *mass = &scene->setup.attribute[ATTRIBUTES_MASS];
-    if (attributes_are(mass, 1) && (!integrator->masses || integrator->friction))
-        mass->ranges = 0;
-    else if (mass->ranges > 0 && !integrator->masses)
-        mf_json_fault(
-            object, "particles.mass",
-            "%s moves particles of mass 1 only; \"aboba\" and \"dpd-verlet\" move others, "
-            "and without \"dissipative\" \"velocity-verlet\"",
-            integrator->name);
-    else if (mass->ranges > 0 && remembers)
-        mf_json_fault(object, "particles.mass",
-                      "friction with memory or perpendicular to pairs needs particles of mass 1");
-}
-
-static enum status read_dynamics(struct scene *scene, struct json_object *object, int unknown) {
-    const char **names;
-    TRY(mf_names_collect(mf_integrator_list, NULL, &names));
-    struct json_object dynamics = mf_json_child_of(object, "dynamics", false, "integrator");
-    const bool remembers =
-        pair_memory_acts(&scene->setup.memory) || (unknown & SCENE_FITS_TRANSVERSE);
-    const bool dissipative = scene->omega.curves > 0 || (unknown & SCENE_FITS_OMEGA) || remembers;
-    const char *name = dissipative ? mf_aboba.name : mf_velocity_verlet.name;
-    if (dynamics.item)
-        name = mf_json_choice(&dynamics, "integrator", names, name);
-    mf_memory_free(names);
-    if (name == NULL)
-        return STATUS_OK;
-    const struct integrator *integrator = mf_names_find(mf_integrator_list, name);
-    scene->setup.integrator = integrator;
-    if (integrator->parameters_size > 0) {
-        scene->integrator_parameters = mf_memory_zeroed(1, integrator->parameters_size);
-        if (scene->integrator_parameters == NULL)
-            return STATUS_NO_MEMORY;
-    }
-    mf_json_fields(&dynamics, integrator->fields, scene->integrator_parameters);
-    scene->setup.integrator_parameters = scene->integrator_parameters;
-    if (dynamics.item)
-        mf_json_finish(&dynamics);
-    if (scene->setup.temperature == 0 && integrator->mobility == NULL)
-        mf_json_fault(object, "temperature", "0 is for dynamics without velocities, as \"%s\"",
-                      mf_brownian.name);
-    const struct interaction *oriented = mf_simulation_oriented(&scene->setup);
-    if (oriented && scene->setup.box.dimensions == 2 && integrator->orientation_mobility == NULL)
-        mf_json_fault(object, "dynamics",
-                      "%s turns no orientations, which \"%s\" is about; use \"%s\"",
-                      integrator->name, oriented->name, mf_brownian.name);
-    if (scene->setup.placement.count < 2 && integrator->solvent_particles == NULL)
-        fault_too_few_particles(scene, object);
-    if (unknown && integrator->events)
-        mf_json_fault(object, "dynamics",
-                      "%s moves hard particles, which have no forces that could be found",
-                      integrator->name);
-    else if (dissipative && !integrator->dissipative)
-        mf_json_fault(object, "dynamics",
-                      integrator->samples
-                          ? "%s has no friction: leave \"dissipative\" out"
-                          : "%s has no friction; use \"aboba\" with \"dissipative\"",
-                      integrator->name);
-    else if (remembers && !integrator->remembers)
-        mf_json_fault(object, "dynamics", "%s does not integrate \"%s\"; use \"aboba\"",
-                      integrator->name,
-                      scene->memory.modes > 0 ? "memory" : "dissipative_transverse");
-    if (integrator->samples)
-        check_moves(scene, object);
-    check_orientation(scene, object);
-    check_masses(scene, object, remembers);
-    return STATUS_OK;
 }
 
 double mf_scene_mass_density(const struct scene *scene) {
@@ -298,6 +177,51 @@ static void check_units(const struct scene *scene, struct json_object *object) {
             mass, atomic_mass, density);
 }
 
+/// A vector has a number for each axis: one too many would act on nothing, one too few leave an
+/// axis free.
+static void check_vectors(struct json_object *object, const struct field *fields, int dimensions) {
+    for (const struct field *field = fields; field->name; field++) {
+        const int count = mf_json_count(object, field->name);
+        if (field->type == FIELD_LENGTHS && (count == 2 || count == 3) && count != dimensions)
+            mf_json_fault(object, field->name, "has %d numbers, but the scene has %d dimensions",
+                          count, dimensions);
+    }
+}
+
+static enum status read_interaction(struct scene_interactions *interactions,
+                                    struct json_object *object, const struct interaction *kind) {
+    struct json_object own = mf_json_child(object, kind->name, false);
+    if (own.item == NULL)
+        return STATUS_OK;
+    void *parameters = mf_memory_zeroed(1, kind->parameters_size);
+    if (parameters == NULL)
+        return STATUS_NO_MEMORY;
+    mf_json_fields(&own, kind->fields, parameters);
+    check_vectors(&own, kind->fields, interactions->dimensions);
+    if (kind->oriented && interactions->dimensions != 2)
+        mf_json_fault(object, kind->name, "orientations are of two dimensions, not %d",
+                      interactions->dimensions);
+    mf_json_finish(&own);
+    interactions->parameters[interactions->count] = parameters;
+    interactions->choice[interactions->count++] = (struct interaction_choice){kind, parameters};
+    return STATUS_OK;
+}
+
+/// In the order of mf_interaction_list.
+static enum status read_interactions(struct scene_interactions *interactions,
+                                     struct json_object *parent, struct simulation_setup *setup) {
+    struct json_object object = mf_json_child(parent, "interactions", false);
+    if (object.item == NULL)
+        return STATUS_OK;
+    interactions->dimensions = setup->box.dimensions;
+    for (size_t k = 0; mf_interaction_list[k]; k++)
+        TRY(read_interaction(interactions, &object, mf_interaction_list[k]));
+    mf_json_finish(&object);
+    memcpy(setup->interaction, interactions->choice, sizeof interactions->choice);
+    setup->interactions = interactions->count;
+    return STATUS_OK;
+}
+
 /// Molecules act, if there are any and the box is large enough for them.
 static void enter_molecules(struct scene *scene, struct json_object *object) {
     const struct molecules *molecules = &scene->molecules.molecules;
@@ -319,11 +243,26 @@ static bool finds_friction_alone(int unknown) {
     return unknown && !(unknown & SCENE_FITS_POTENTIAL);
 }
 
+/// Lend the setup what the scene owns.
+static void lend_laws(struct scene *scene) {
+    scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
+    scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
+}
+
+static void read_given(struct scene *scene, const struct json_object *object) {
+    scene->given.conservative = mf_json_is_member(object, "conservative");
+    scene->given.dissipative = mf_json_is_member(object, "dissipative");
+    scene->given.transverse = mf_json_is_member(object, "dissipative_transverse");
+    scene->given.memory = mf_json_is_member(object, "memory");
+    scene->given.dynamics = mf_json_is_member(object, "dynamics");
+}
+
 enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown,
                           const struct scene_fitted *fitted) {
     *scene = (struct scene){.unknown = unknown};
     mf_units_read(&scene->units, object);
     read_top(scene, object);
+    read_given(scene, object);
     TRY(mf_scene_particles_read(scene, object, fitted));
     check_units(scene, object);
     if (finds_friction_alone(unknown)) // between what particles, a fit would ask in vain
@@ -342,13 +281,28 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
     TRY(mf_scene_memory_read(&scene->memory, object, &scene->setup.composition, &scene->units,
                              unknown & SCENE_FITS_MEMORY));
     scene->setup.memory = mf_scene_memory_law(&scene->memory);
-    TRY(mf_scene_interactions_read(&scene->interactions, object, &scene->setup));
+    TRY(read_interactions(&scene->interactions, object, &scene->setup));
     TRY(mf_scene_many_body_read(&scene->many_body, object, &scene->setup, fitted != NULL));
     enter_molecules(scene, object);
-    TRY(read_dynamics(scene, object, unknown));
-    scene->setup.potential = scene->potential.curves ? &scene->potential.table : NULL;
-    scene->setup.omega = scene->omega.curves ? &scene->omega.table : NULL;
+    TRY(mf_scene_dynamics_read(scene, object));
+    lend_laws(scene);
     return STATUS_OK;
+}
+
+enum status mf_scene_complete(struct scene *scene, struct json_object *object,
+                              const struct integrator *integrator) {
+    struct table *const omega = &scene->omega.table;
+    mf_scene_particles_complete(scene, object);
+    if (scene->omega.curves > 0 && omega->curves == 0)
+        TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
+    lend_laws(scene);
+    return mf_scene_dynamics_complete(scene, object, integrator);
+}
+
+static void clear_interactions(struct scene_interactions *interactions) {
+    for (int k = 0; k < interactions->count; k++)
+        mf_memory_free(interactions->parameters[k]);
+    *interactions = (struct scene_interactions){0};
 }
 
 void mf_scene_clear(struct scene *scene) {
@@ -358,7 +312,7 @@ void mf_scene_clear(struct scene *scene) {
     mf_scene_many_body_clear(&scene->many_body);
     mf_memory_free(scene->start_values);
     mf_memory_free(scene->integrator_parameters);
-    mf_scene_interactions_clear(&scene->interactions);
+    clear_interactions(&scene->interactions);
     mf_scene_molecules_clear(&scene->molecules);
     *scene = (struct scene){0};
 }
@@ -381,6 +335,34 @@ const char *mf_scene_warning(const struct scene *scene) {
            "conserves its energy, and its temperature drifts";
 }
 
+/// Vectors with a number for each axis, be it 0.
+static void write_parameter(const struct field *field, const char *parameters, int dimensions,
+                            struct json_writer *writer) {
+    const struct field one[] = {*field, FIELD_END};
+    double vector[3];
+    if (field->type != FIELD_LENGTHS) {
+        mf_json_write_fields(writer, one, parameters);
+        return;
+    }
+    memcpy(vector, parameters + field->offset, sizeof vector);
+    mf_json_write_quantities(writer, field->name, field->unit, vector, (size_t)dimensions);
+}
+
+static void write_interactions(const struct scene_interactions *interactions,
+                               struct json_writer *writer) {
+    if (interactions->count == 0)
+        return;
+    mf_json_begin(writer, "interactions");
+    for (int k = 0; k < interactions->count; k++) {
+        const struct interaction *kind = interactions->choice[k].kind;
+        mf_json_begin(writer, kind->name);
+        for (const struct field *field = kind->fields; field->name; field++)
+            write_parameter(field, interactions->parameters[k], interactions->dimensions, writer);
+        mf_json_end(writer);
+    }
+    mf_json_end(writer);
+}
+
 void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     const struct simulation_setup *setup = &scene->setup;
     struct top top = {.dimensions = setup->box.dimensions,
@@ -400,7 +382,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
     mf_scene_memory_write(&scene->memory, &setup->composition, writer);
     mf_scene_many_body_write(&scene->many_body, writer);
-    mf_scene_interactions_write(&scene->interactions, writer);
+    write_interactions(&scene->interactions, writer);
     mf_json_begin(writer, "dynamics");
     mf_json_write_text(writer, "integrator", setup->integrator->name);
     mf_json_write_fields(writer, setup->integrator->fields, setup->integrator_parameters);

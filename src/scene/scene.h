@@ -3,7 +3,6 @@
 #pragma once
 
 #include "dynamics/simulation.h"
-#include "scene/scene_interactions.h"
 #include "scene/scene_law.h"
 #include "scene/scene_many_body.h"
 #include "scene/scene_memory.h"
@@ -18,8 +17,22 @@ enum scene_unknown {
     SCENE_FITS_MEMORY = 8,     ///< modes of "memory" without "omega"
 };
 
+/// Owns the numbers of the interactions that a scene names.
+struct scene_interactions {
+    struct interaction_choice choice[INTERACTION_MAX];
+    void *parameters[INTERACTION_MAX];
+    int count;
+    int dimensions; ///< of the scene: how many numbers a vector has
+};
+
+/// What of it the file says. A fit chooses what is left out.
+struct scene_given {
+    bool time_step, count, conservative, dissipative, transverse, memory, dynamics;
+};
+
 /// Owns its laws and arrays; `setup` borrows them.
 struct scene {
+    struct scene_given given;
     struct simulation_setup setup;
     struct scene_law potential, omega;
     struct scene_memory memory;
@@ -44,6 +57,13 @@ extern const struct field mf_scene_fields[], mf_scene_density_fields[];
 enum status mf_scene_read(struct scene *scene, struct json_object *object, int unknown,
                           const struct scene_fitted *fitted) MUST_USE;
 void mf_scene_clear(struct scene *scene);
+
+/// Let follow what does from a count of beads, a friction law or an unknown that were chosen after
+/// the scene was read: composition and box, table, integrator. Faults as in mf_scene_read, such as
+/// of a count that nobody has chosen. Fails: NO_MEMORY.
+/// @param[in] integrator  that was chosen, or NULL: the file's, or the usual one
+enum status mf_scene_complete(struct scene *scene, struct json_object *object,
+                              const struct integrator *integrator) MUST_USE;
 
 /// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with
 /// units.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/scene_attributes.h"
+#include "scene/scene_parts.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/scene_coordinates.h"
+#include "scene/scene_parts.h"
 
 #include "base/memory.h"
 #include "topologies/lammps_topology.h"

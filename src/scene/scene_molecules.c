@@ -4,8 +4,7 @@
 #include "base/memory.h"
 #include "base/nearest.h"
 #include "base/names.h"
-#include "scene/scene_topology.h"
-#include "io/json_list.h"
+#include "io/json.h"
 #include "observe/bonded_distribution.h"
 
 #include <string.h>

@@ -23,7 +23,7 @@ struct scene_fitted {
     int count[BONDED_KINDS];
     char name[BONDED_KINDS][MOLECULES_MAX_GROUPS][TOPOLOGY_NAME_SIZE];
     bool given;         ///< by "unknowns"; else what has a target is fitted
-    bool count_follows; ///< a count of beads that the scene does not say is chosen later
+    bool count_follows; ///< a count of beads that the scene does not say may be chosen later
     struct json_object from[BONDED_KINDS]; ///< the objects that name them, of those that there are
 };
 
@@ -121,3 +121,14 @@ void mf_scene_groups_join(struct molecules *molecules, struct molecules *given,
 
 void mf_scene_groups_write(const struct molecules *molecules, int order,
                            struct json_writer *writer);
+
+/// Read kinds, groups and types of the file that an object names, by its name a topology of GROMACS
+/// or a data file of LAMMPS. The topology is not completed. Faults go to the document. Fails:
+/// NO_MEMORY.
+/// @param[in,out] molecules  with the groups that the scene or a fit has; those of a data file come
+///                           after them
+/// @param[in]     scene      the object with the laws of groups
+enum status mf_scene_topology_read(struct scene_molecules *molecules, struct json_object *object,
+                                   struct json_object *scene, const struct scene_fitted *fitted,
+                                   struct composition *composition,
+                                   const struct units *units) MUST_USE;

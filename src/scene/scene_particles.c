@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/scene_particles.h"
+#include "scene/scene_parts.h"
 
 #include "base/digest.h"
 #include "base/memory.h"
 #include "base/names.h"
-#include "scene/scene_attributes.h"
-#include "scene/scene_coordinates.h"
 #include "io/data_table.h"
 #include "trajectory/snapshot.h"
 
@@ -126,7 +124,9 @@ done:
 /// of places has its own
 static void read_count(struct scene *scene, struct json_object *particles, bool follows) {
     enum { ANY_COUNT = 1000 };
-    if (follows && !mf_json_has(particles, "count") && !mf_json_has(particles, "file"))
+    scene->given.count =
+        !follows || mf_json_has(particles, "count") || mf_json_has(particles, "file");
+    if (!scene->given.count)
         scene->setup.placement.count = ANY_COUNT;
     else
         mf_json_fields(particles, mf_placement_count_fields, &scene->setup.placement);
@@ -186,6 +186,7 @@ static enum status read_beads(struct scene *scene, struct json_object *object,
     const bool beside = mf_json_has(object, "molecules");
     struct composition *composition = &scene->setup.composition;
     const bool typed = mf_json_has(particles, "types");
+    scene->given.count = true;
     if (beside && !typed && mf_json_has(particles, "count"))
         mf_json_fault(particles, "count",
                       "with molecules single beads need types, as in \"types\": {\"A\": 100}");
@@ -226,6 +227,18 @@ enum status mf_scene_particles_read(struct scene *scene, struct json_object *obj
     return mf_scene_coordinates_are_of_engine(placement->file)
                ? mf_scene_coordinates_read(scene, &particles)
                : read_positions(scene, &particles);
+}
+
+void mf_scene_particles_complete(struct scene *scene, struct json_object *object) {
+    struct simulation_setup *setup = &scene->setup;
+    if (!scene->given.count) {
+        struct json_object particles = mf_json_child(object, "particles", true);
+        mf_json_fields(&particles, mf_placement_count_fields, &setup->placement);
+    } else if (!composition_is_mixed(&setup->composition) &&
+               !scene_has_molecules(&scene->molecules)) {
+        setup->composition = mf_composition_of_one(setup->placement.count);
+        make_box(scene);
+    }
 }
 
 /// Single beads beside molecules, if there are any.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene/scene_topology.h"
+#include "scene/scene_molecules.h"
 
 #include "topologies/gromacs_topology.h"
 #include "topologies/lammps_topology.h"

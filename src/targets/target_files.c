@@ -124,6 +124,19 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
     return STATUS_OK;
 }
 
+enum status mf_target_files_complete(struct target_files *files, struct json_object *root,
+                                     const struct target_scene *scene) {
+    struct json_object object = mf_json_child(root, "target", true);
+    files->composition = *scene->composition;
+    for (int kind = 0; mf_targets_name(kind); kind++) {
+        const struct target_record *record = mf_target_record(kind);
+        struct json_object child = mf_json_child(&object, mf_targets_name(kind), false);
+        if (files->given[kind] && record->complete)
+            TRY(record->complete(files, kind, &child, scene));
+    }
+    return STATUS_OK;
+}
+
 void mf_target_files_clear(struct target_files *files) {
     for (int kind = 0; mf_targets_name(kind); kind++) {
         if (files->own[kind] && mf_target_record(kind)->clear)

@@ -67,6 +67,14 @@ static inline const struct target_curve *target_files_curve(const struct target_
 enum status mf_target_files_read(struct target_files *files, struct json_object *root,
                                  const struct target_scene *scene) MUST_USE;
 void mf_target_files_clear(struct target_files *files);
+
+/// Let follow what does from parameters of g(r), and from a composition, that were chosen after the
+/// targets were read. Faults go to the document of `root`. Fails: NO_MEMORY.
+enum status mf_target_files_complete(struct target_files *files, struct json_object *root,
+                                     const struct target_scene *scene) MUST_USE;
+
+/// Take out the target of a group of bonds, angles or dihedrals. Fails: NO_MEMORY.
+enum status mf_target_files_drop(struct target_files *files, int order, size_t group) MUST_USE;
 void mf_target_files_write(const struct target_files *files, struct json_writer *writer);
 
 /// Add what was read from files to the digest of a checkpoint.

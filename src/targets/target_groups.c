@@ -96,6 +96,21 @@ done:
     return status;
 }
 
+enum status mf_target_files_drop(struct target_files *files, int order, size_t group) {
+    const int kind = mf_bonded_distribution_kind(order);
+    struct target_groups *groups = files->own[kind];
+    mf_target_bonded_clear(&groups->member[group]);
+    TRY(collect(groups));
+    void **const settings = &files->settings[mf_observable_kind(kind).place];
+    *(struct bonded_settings *)*settings = settings_of(groups);
+    if (groups->first[groups->groups] > 0)
+        return STATUS_OK;
+    mf_memory_free(*settings);
+    *settings = NULL;
+    files->given[kind] = false;
+    return STATUS_OK;
+}
+
 /// By the numbers of the scene's groups.
 static enum status allocate(struct target_groups *groups, struct json_object *object,
                             const struct molecules *molecules) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "targets/target_files.h"
 
-#include "scene/pair_names.h"
+#include "scene/scene_law.h"
 
 #include <math.h>
 
@@ -28,34 +28,44 @@ static void read_number(struct target_kirkwood_buff *target, int pair, struct js
     target->error[pair] = number.error;
 }
 
+/// The components of the scene.
+static enum status complete(struct target_files *files, int kind, struct json_object *object,
+                            const struct target_scene *scene) {
+    struct target_kirkwood_buff *target = files->own[kind];
+    const struct composition *composition = &files->composition;
+    const struct topology *topology = scene->molecules ? &scene->molecules->topology : NULL;
+    if (mf_components_find(&target->components, composition,
+                           (size_t)mf_composition_particles(composition), topology) != STATUS_OK)
+        mf_json_fault(object, NULL, "%s", mf_status_marked());
+    return STATUS_OK;
+}
+
 /// Faults, as a pair that is not there or no error, go to the document.
 static enum status read(struct target_files *files, int kind, struct json_object *object,
                         const struct target_scene *scene) {
     struct target_kirkwood_buff *target = files->own[kind];
     const struct composition *composition = &files->composition;
-    const struct topology *topology = scene->molecules ? &scene->molecules->topology : NULL;
     const struct composition *components = &target->components;
+    const size_t faults = mf_json_fault_count(object->document);
     char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE]; // remembered until it is finished
     const char *key[COMPOSITION_MAX_PAIRS];
     size_t named = 0;
     if (composition->types == 0)
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
-    if (mf_components_find(&target->components, composition,
-                           (size_t)mf_composition_particles(composition), topology) != STATUS_OK) {
-        mf_json_fault(object, NULL, "%s", mf_status_marked());
+    TRY(complete(files, kind, object, scene));
+    if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
-    }
     target->pairs = (size_t)mf_composition_pairs(components);
     for (size_t pair = 0; pair < target->pairs; pair++)
         target->value[pair] = target->error[pair] = NAN;
     if (!composition_is_mixed(components)) {
-        if (mf_pair_names_refuse(object, components, "{\"value\": …, \"error\": …}"))
+        if (mf_scene_pair_names_refuse(object, components, "{\"value\": …, \"error\": …}"))
             return STATUS_OK;
         read_number(target, 0, object);
         mf_json_finish(object);
         return STATUS_OK;
     }
-    const bool known = mf_pair_names_find(object, components, key);
+    const bool known = mf_scene_pair_names_find(object, components, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(components, (int)pair, name[pair]);
         mf_json_has(object, name[pair]);
@@ -110,6 +120,7 @@ const struct target_record mf_target_kirkwood_buff = {
     .kinds = {"kirkwood_buff"},
     .size = sizeof(struct target_kirkwood_buff),
     .read = read,
+    .complete = complete,
     .write = write,
     .values = values,
 };

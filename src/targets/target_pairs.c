@@ -2,7 +2,7 @@
 #include "targets/target_files.h"
 
 #include "base/memory.h"
-#include "scene/pair_names.h"
+#include "scene/scene_law.h"
 
 #include <math.h>
 #include <string.h>
@@ -50,10 +50,19 @@ static void check_bins(const struct target_pairs *target, const struct compositi
     }
 }
 
+static void clear_values(struct target_pairs *target) {
+    double **const values[] = {&target->g, &target->error, &target->given, &target->factor_error};
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+        mf_memory_free(*values[k]);
+        *values[k] = NULL;
+    }
+}
+
 /// g and errors of all pair types in the numbers of the scene, one after the other, if all
 /// could be read.
 static enum status collect(struct target_pairs *target, const struct finite_size_fluid *fluid) {
     const size_t bins = target_pairs_bins(target)->count;
+    clear_values(target);
     for (size_t pair = 0; pair < target->pairs; pair++)
         if (target->member[pair].bins.count != bins)
             return STATUS_OK;
@@ -72,7 +81,18 @@ static enum status collect(struct target_pairs *target, const struct finite_size
     return STATUS_OK;
 }
 
-/// All pair types end with the shortest. Faults go to the document.
+/// Of a mixture all pair types end with the shortest.
+static enum status compare_and_collect(struct target_pairs *target, struct json_object *object,
+                                       const struct finite_size_fluid *fluid) {
+    if (composition_is_mixed(fluid->composition)) {
+        cut_to_shortest(target);
+        fill_bins(target, fluid->composition);
+        check_bins(target, fluid->composition, object);
+    }
+    return collect(target, fluid);
+}
+
+/// Faults go to the document.
 static enum status read_pairs(struct target_pairs *target, struct json_object *object,
                               const struct finite_size_fluid *fluid, const struct units *units) {
     const struct composition *composition = fluid->composition;
@@ -80,15 +100,15 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
         return STATUS_OK; // a fault of the types is told, those of their pairs would mislead
     target->pairs = (size_t)mf_composition_pairs(composition);
     if (!composition_is_mixed(composition)) {
-        if (mf_pair_names_refuse(object, composition, "{\"file\": …}"))
+        if (mf_scene_pair_names_refuse(object, composition, "{\"file\": …}"))
             return STATUS_OK;
         TRY(mf_target_rdf_read(&target->member[0], object, units, fluid->box->dimensions));
-        return collect(target, fluid);
+        return compare_and_collect(target, object, fluid);
     }
     // The object remembers what it was asked for until it is finished.
     char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     const char *key[COMPOSITION_MAX_PAIRS];
-    const bool known = mf_pair_names_find(object, composition, key);
+    const bool known = mf_scene_pair_names_find(object, composition, key);
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(composition, (int)pair, name[pair]);
         if (!mf_composition_has_pairs(composition, (int)pair)) {
@@ -104,10 +124,7 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
             TRY(mf_target_rdf_read(&target->member[pair], &child, units, fluid->box->dimensions));
     }
     mf_json_finish(object);
-    cut_to_shortest(target);
-    fill_bins(target, composition);
-    check_bins(target, composition, object);
-    return collect(target, fluid);
+    return compare_and_collect(target, object, fluid);
 }
 
 /// Divide g and errors of a pair type.
@@ -172,11 +189,12 @@ enum status mf_target_files_normalise(struct target_files *files, const struct b
 }
 
 /// Of beads of different molecules: also the bins in which they are measured.
-static enum status read_intermolecular(struct target_files *files, int kind) {
+static enum status set_bins_of_intermolecular(struct target_files *files, int kind) {
     const size_t place = mf_observable_kind(kind).place;
     struct rdf_settings *settings = mf_memory_zeroed(1, sizeof *settings);
     if (settings == NULL)
         return STATUS_NO_MEMORY;
+    mf_memory_free(files->settings[place]);
     *settings = (struct rdf_settings){.of_target = true,
                                       .estimator = RDF_FORCE_NOT_USED,
                                       .target = *target_pairs_bins(files->own[kind])};
@@ -184,26 +202,38 @@ static enum status read_intermolecular(struct target_files *files, int kind) {
     return STATUS_OK;
 }
 
+static struct finite_size_fluid fluid_of(const struct target_files *files, int kind,
+                                         const struct target_scene *scene) {
+    return (struct finite_size_fluid){.box = scene->box,
+                                      .composition = &files->composition,
+                                      .topology =
+                                          scene->molecules ? &scene->molecules->topology : NULL,
+                                      .intermolecular = kind != TARGET_RDF};
+}
+
 static enum status read(struct target_files *files, int kind, struct json_object *object,
                         const struct target_scene *scene) {
-    const bool intermolecular = kind != TARGET_RDF;
-    const struct finite_size_fluid fluid = {
-        .box = scene->box,
-        .composition = &files->composition,
-        .topology = scene->molecules ? &scene->molecules->topology : NULL,
-        .intermolecular = intermolecular};
+    const struct finite_size_fluid fluid = fluid_of(files, kind, scene);
     TRY(read_pairs(files->own[kind], object, &fluid, scene->units));
-    return intermolecular ? read_intermolecular(files, kind) : STATUS_OK;
+    return fluid.intermolecular ? set_bins_of_intermolecular(files, kind) : STATUS_OK;
+}
+
+static enum status complete(struct target_files *files, int kind, struct json_object *object,
+                            const struct target_scene *scene) {
+    struct target_pairs *target = files->own[kind];
+    const struct finite_size_fluid fluid = fluid_of(files, kind, scene);
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        if (mf_composition_has_pairs(fluid.composition, (int)pair))
+            TRY(mf_target_rows_fault(object, NULL, mf_target_rdf_cut(&target->member[pair])));
+    TRY(compare_and_collect(target, object, &fluid));
+    return fluid.intermolecular ? set_bins_of_intermolecular(files, kind) : STATUS_OK;
 }
 
 static void clear(void *own) {
     struct target_pairs *target = own;
     for (size_t pair = 0; pair < target->pairs; pair++)
         mf_target_rdf_clear(&target->member[pair]);
-    mf_memory_free(target->g);
-    mf_memory_free(target->error);
-    mf_memory_free(target->given);
-    mf_memory_free(target->factor_error);
+    clear_values(target);
 }
 
 static void write(const struct target_files *files, int kind, struct json_writer *writer) {
@@ -288,6 +318,7 @@ const struct target_record mf_target_pairs = {
     .kinds = {"rdf", "intermolecular_rdf"},
     .size = sizeof(struct target_pairs),
     .read = read,
+    .complete = complete,
     .clear = clear,
     .write = write,
     .values = values,

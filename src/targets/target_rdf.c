@@ -249,14 +249,36 @@ static enum status keep_whole(struct target_rdf *target, const struct target_row
     return STATUS_OK;
 }
 
-static enum status load(struct target_rdf *target, const struct units *units, int dimensions) {
+static enum status copy(struct target_rows *to, const struct target_rows *from) {
+    const size_t bytes = from->count * sizeof(double);
+    TRY(mf_target_rows_allocate(to, from->count));
+    memcpy(to->x, from->x, bytes);
+    memcpy(to->y, from->y, bytes);
+    memcpy(to->error, from->error, bytes);
+    memcpy(to->line, from->line, from->count * sizeof *to->line);
+    to->has_errors = from->has_errors;
+    return STATUS_OK;
+}
+
+/// All that follows from the rows.
+static void clear_bins(struct target_rdf *target) {
+    mf_memory_free(target->g);
+    mf_memory_free(target->error);
+    mf_memory_free(target->whole.g);
+    mf_memory_free(target->whole.error);
+    *target = (struct target_rdf){.parameters = target->parameters,
+                                  .given = target->given,
+                                  .rows = target->rows,
+                                  .tail = target->tail};
+}
+
+enum status mf_target_rdf_cut(struct target_rdf *target) {
     const struct target_rdf_parameters *p = &target->parameters;
-    CLEARED_BY(mf_target_rows_clear) struct target_rows rows = {.dimensions = dimensions};
+    CLEARED_BY(mf_target_rows_clear)
+    struct target_rows rows = {.dimensions = target->rows.dimensions};
     struct rdf_bins bins;
-    TRY(p->format == TARGET_ROWS_VOTCA ? read_votca(p, units, &rows)
-                                       : read_columns(p, units, &rows));
-    leave_out_half_bin(&rows);
-    target->tail = mf_target_rows_tail(&rows);
+    clear_bins(target);
+    TRY(copy(&rows, &target->rows));
     TRY(keep_whole(target, &rows));
     cut(p, &rows);
     TRY(check_values(target, &rows));
@@ -271,11 +293,21 @@ static enum status load(struct target_rdf *target, const struct units *units, in
     return STATUS_OK;
 }
 
+static enum status load(struct target_rdf *target, const struct units *units, int dimensions) {
+    const struct target_rdf_parameters *p = &target->parameters;
+    target->rows.dimensions = dimensions;
+    TRY(p->format == TARGET_ROWS_VOTCA ? read_votca(p, units, &target->rows)
+                                       : read_columns(p, units, &target->rows));
+    leave_out_half_bin(&target->rows);
+    target->tail = mf_target_rows_tail(&target->rows);
+    return mf_target_rdf_cut(target);
+}
+
 enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *object,
                                const struct units *units, int dimensions) {
     *target = (struct target_rdf){0};
     const size_t faults = mf_json_fault_count(object->document);
-    mf_json_fields(object, mf_target_rdf_fields, &target->parameters);
+    target->given = mf_json_fields(object, mf_target_rdf_fields, &target->parameters);
     mf_json_finish(object);
     if (mf_json_fault_count(object->document) > faults)
         return STATUS_OK;
@@ -313,9 +345,7 @@ void mf_target_rdf_convert(const struct target_rdf *target, const struct finite_
 }
 
 void mf_target_rdf_clear(struct target_rdf *target) {
-    mf_memory_free(target->g);
-    mf_memory_free(target->error);
-    mf_memory_free(target->whole.g);
-    mf_memory_free(target->whole.error);
+    clear_bins(target);
+    mf_target_rows_clear(&target->rows);
     *target = (struct target_rdf){0};
 }

@@ -23,6 +23,8 @@ extern const struct field mf_target_rdf_fields[];
 
 struct target_rdf {
     struct target_rdf_parameters parameters;
+    uint64_t given;          ///< which of them the file says (mf_fields_bit)
+    struct target_rows rows; ///< of the file, all of them
     struct rdf_bins bins;
     double *g, *error;       ///< shape [bins.count]
     size_t joined;           ///< rows of the file that make a bin
@@ -47,6 +49,10 @@ struct target_rdf {
 /// Fails: NO_MEMORY. Tested: test_target_rdf.
 enum status mf_target_rdf_read(struct target_rdf *target, struct json_object *object,
                                const struct units *units, int dimensions) MUST_USE;
+
+/// Cut and join the rows again, once `cutoff` and `bin_width` have changed. Fails: BAD_INPUT,
+/// NO_MEMORY.
+enum status mf_target_rdf_cut(struct target_rdf *target) MUST_USE;
 
 /// g and its errors in the numbers of the scene, by mf_finite_size_factor_of. VOTCA's g of like
 /// pairs is normalised by N_a², and needs 1/(1 − 1/N_a) with the N_a that was measured.

@@ -44,6 +44,10 @@ struct target_record {
     /// to the document. Fails: NO_MEMORY.
     enum status (*read)(struct target_files *files, int kind, struct json_object *object,
                         const struct target_scene *scene);
+    /// Let follow what does from parameters, and from a composition, that were chosen after it was
+    /// read. Faults go to the document. Fails: NO_MEMORY. NULL: nothing does.
+    enum status (*complete)(struct target_files *files, int kind, struct json_object *object,
+                            const struct target_scene *scene);
     void (*clear)(void *own); ///< NULL: nothing is to be freed
     /// NULL: the first of `fields`, which are at the beginning of what it keeps.
     void (*write)(const struct target_files *files, int kind, struct json_writer *writer);

@@ -4,7 +4,7 @@
 // it. Companions, with which none can, stand in an object of their own. Printed at once: a tree of
 // a million particles would not fit into the memory.
 #include "base/memory.h"
-#include "io/json_list.h"
+#include "io/json.h"
 #include "system/attributes.h"
 #include "trajectory/snapshot.h"
 

@@ -6,7 +6,7 @@
 #include "base/ranks.h"
 #include "base/visible.h"
 #include "defaults/fit_states.h"
-#include "io/checkpoint_pace.h"
+#include "io/checkpoint.h"
 #include "report/fit_closing.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"

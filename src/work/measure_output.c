@@ -9,7 +9,6 @@
 #include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 #include "problem/targets.h"
-#include "work/measure_tables.h"
 
 #include <math.h>
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scene/scene_molecules.h"
+#include "report/progress.h"
 #include "io/json_write.h"
 #include "work/measure_run.h"
 
@@ -39,3 +40,20 @@ void mf_measure_output_write_masses(const struct measure_result *result,
 
 /// Write the tables, target.json, summary.json and used.json. Fails: IO, NO_MEMORY.
 enum status mf_measure_output_write(const struct measure_result *result) MUST_USE;
+
+/// Print a line for each thing that a person is to know. Fails: NO_MEMORY.
+enum status mf_measure_print(struct progress *progress,
+                             const struct measure_result *result) MUST_USE;
+
+/// Whether any window of motion is complete; and any of escape times.
+bool mf_measure_tables_have_motion(const struct measure_result *result);
+bool mf_measure_tables_have_etd(const struct measure_result *result);
+
+/// Write rdf.tsv or those of pair types; structure_factor.tsv, density_profile.tsv, msd.tsv,
+/// vacf.tsv, etd.tsv, etd_error.tsv and etd_bins.tsv as far as they were measured. Fails: IO,
+/// NO_MEMORY.
+enum status mf_measure_tables_write(const struct measure_result *result) MUST_USE;
+
+/// Fails: NO_MEMORY.
+enum status mf_measure_scene_write(const struct measure_result *result,
+                                   struct json_writer *writer) MUST_USE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "work/measure_print.h"
+#include "work/measure_output.h"
 
 #include "base/memory.h"
 #include "base/number_text.h"

@@ -7,9 +7,7 @@
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"
-#include "scene/molecules_listing.h"
 #include "work/measure_output.h"
-#include "work/measure_print.h"
 
 #include <math.h>
 #include <string.h>

@@ -5,7 +5,6 @@
 #include "scene/heading.h"
 #include "scene/scene.h"
 #include "io/checkpoint.h"
-#include "io/checkpoint_pace.h"
 #include "mesofit.h"
 #include "report/progress.h"
 #include "work/explain.h"

@@ -70,7 +70,7 @@ static void test_run_files_are_taken(void **state) {
 }
 
 /// Tables may be pipes, which are gone once they were read: constraints, friction and defaults are
-/// chosen in passes over the same texts.
+/// chosen from what was read of them.
 static void test_run_files_are_opened_once(void **state) {
     struct temporary_folder *folder = *state;
     static struct run_program_result result;

@@ -10,7 +10,6 @@
 #include "defaults/fit_file.h"
 #include "import/import_system.h"
 #include "report/result.h"
-#include "scene/molecules_listing.h"
 #include "scene/molecules_file.h"
 #include "trajectory/mapping.h"
 #include "trajectory/trajectory.h"

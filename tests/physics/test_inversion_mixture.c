@@ -3,6 +3,7 @@
 // Inversions of a mixture find its three potentials from its partial g(r), each but for the ramp A
 // (1 − r/r_c).
 #include "curves/formula.h"
+#include "dynamics/metropolis.h"
 #include "inversion/inversions.h"
 #include "shared/fluids.h"
 #include "shared/inversions.h"

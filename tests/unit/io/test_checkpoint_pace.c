@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/checkpoint_pace.h"
+#include "io/checkpoint.h"
 #include "shared/testing.h"
 
 static void test_quick_saves_come_at_their_interval(void **state) {

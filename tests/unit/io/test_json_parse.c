@@ -3,7 +3,7 @@
 // What is no JSON is refused in one line with its place, and what cJSON reads beyond JSON keeps its
 // value.
 #include "io/json.h"
-#include "io/json_parse.h"
+#include "io/json_document.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 

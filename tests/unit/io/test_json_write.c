@@ -201,42 +201,6 @@ static void test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad(void
     mf_json_writer_free(writer);
 }
 
-/// What the file has stays, at any depth, also where it is of another kind.
-static void test_json_write_into_adds_what_an_object_lacks(void **state) {
-    static const char text[] = "{\"strength\": 0.25, \"inner\": {\"steps\": 3}, \"kind\": 7}";
-    static const struct field fields[] = {
-        {"strength", FIELD_NUMBER, 0, .initial = -1, .minimum = -1, .maximum = 1}, FIELD_END};
-    struct json_document *document;
-    double strength;
-    struct json_writer *writer = mf_json_writer_create();
-    mf_json_write_number(writer, "strength", 0.5);
-    mf_json_write_text(writer, "added", "here");
-    mf_json_begin(writer, "kind");
-    mf_json_write_number(writer, "strength", 0.5);
-    mf_json_end(writer);
-    mf_json_begin(writer, "inner");
-    mf_json_write_number(writer, "strength", 1.0 / 3);
-    mf_json_write_number(writer, "steps", 4);
-    mf_json_end(writer);
-    assert_ok(
-        mf_json_open(&document, temporary_folder_write(*state, "run.json", text, sizeof text - 1)));
-    struct json_object root = mf_json_root(document);
-    assert_ok(mf_json_write_into(writer, &root));
-    mf_json_writer_free(writer);
-
-    mf_json_fields(&root, fields, &strength);
-    assert_identical(strength, 0.25);
-    assert_string_equal(mf_json_choice(&root, "added", NULL, NULL), "here");
-    assert_false(mf_json_is_object(&root, "kind"));
-    struct json_object inner = mf_json_child(&root, "inner", true);
-    mf_json_fields(&inner, fields, &strength);
-    assert_identical(strength, 1.0 / 3);
-    double steps;
-    assert_int_equal(mf_json_numbers(&inner, "steps", &steps, 1), 1);
-    assert_identical(steps, 3);
-    assert_ok(mf_json_close(document, STATUS_OK));
-}
-
 #define IN_FOLDER(test)                                                                            \
     cmocka_unit_test_setup_teardown(test, temporary_folder_create, temporary_folder_remove)
 
@@ -249,7 +213,6 @@ int main(void) {
         IN_FOLDER(test_json_write_writes_null_when_a_number_is_not_finite),
         IN_FOLDER(test_json_write_writes_nothing_when_the_tree_has_a_problem),
         IN_FOLDER(test_json_write_stream_prints_a_list_when_the_root_is_one),
-        IN_FOLDER(test_json_write_into_adds_what_an_object_lacks),
         cmocka_unit_test(test_json_write_stream_fails_when_the_tree_or_the_stream_is_bad),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,7 +3,7 @@
 // Verifications whose energy and pairs are made up.
 #include "observe/rdf_observable.h"
 #include "observe/thermodynamics.h"
-#include "problem/verify_equilibrium.h"
+#include "problem/verify_agreement.h"
 #include "shared/testing.h"
 
 #include <gsl/gsl_randist.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "library/scene_text.h"
+#include "library/scene_words.h"
 
 #include "curves/table.h"
 
-#include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 struct mesofit_scene mesofit_scene_default(void) {
     return (struct mesofit_scene){.box = {10, 10, 10},
@@ -16,28 +16,38 @@ struct mesofit_scene mesofit_scene_default(void) {
 }
 
 /// A law of the caller's own is put in later, in the place of none.
-static void write_law(const struct mesofit_law *law, const char *key, FILE *stream) {
-    if (law->text || law->value)
-        fprintf(stream, ", \"%s\": %s", key, law->text ? law->text : "{\"law\": \"none\"}");
+static size_t find_law(const struct mesofit_law *law, const char *object, const char *key,
+                       struct json_word *words) {
+    *words = (struct json_word){
+        .object = object, .key = key, .json = law->text ? law->text : "{\"law\": \"none\"}"};
+    return law->text || law->value;
 }
 
-void mf_scene_text_write(const struct mesofit_scene *scene, FILE *stream) {
-    const bool plane = scene->box[2] == 0;
-    fprintf(stream, "\"dimensions\": %d, \"box\": [%.17g, %.17g", plane ? 2 : 3, scene->box[0],
-            scene->box[1]);
-    if (!plane)
-        fprintf(stream, ", %.17g", scene->box[2]);
-    fprintf(stream,
-            "], \"particles\": {\"count\": %" PRId64 "}, \"temperature\": %.17g, "
-            "\"time_step\": %.17g",
-            scene->particles, scene->temperature, scene->time_step);
-    write_law(&scene->conservative, "conservative", stream);
-    write_law(&scene->dissipative, "dissipative", stream);
-    // The text lacks a friction weight of the caller's own, by which its reader would choose.
+size_t mf_scene_words(const struct mesofit_scene *scene, bool of_fit,
+                      struct json_word words[SCENE_WORDS]) {
+    const char *const top = of_fit ? "scene" : NULL;
+    const int dimensions = scene->box[2] == 0 ? 2 : 3;
+    // The words lack a friction weight of the caller's own, by which their reader would choose.
     const char *integrator =
         scene->integrator || scene->dissipative.value == NULL ? scene->integrator : mf_aboba.name;
+    const struct json_word always[] = {
+        {.key = "seed", .value = (double)scene->seed},
+        {.object = top, .key = "dimensions", .value = dimensions},
+        {.object = top, .key = "box", .count = (size_t)dimensions, .values = scene->box},
+        {.object = top, .key = "temperature", .value = scene->temperature},
+        {.object = top, .key = "time_step", .value = scene->time_step},
+        {.object = of_fit ? "scene.particles" : "particles",
+         .key = "count",
+         .value = (double)scene->particles}};
+    size_t count = sizeof always / sizeof *always;
+    memcpy(words, always, sizeof always);
+    count += find_law(&scene->conservative, top, "conservative", &words[count]);
+    count += find_law(&scene->dissipative, top, "dissipative", &words[count]);
     if (integrator)
-        fprintf(stream, ", \"dynamics\": {\"integrator\": \"%s\"}", integrator);
+        words[count++] = (struct json_word){.object = of_fit ? "scene.dynamics" : "dynamics",
+                                            .key = "integrator",
+                                            .text = integrator};
+    return count;
 }
 
 static double own_value(const void *parameters, double r) {
@@ -88,7 +98,7 @@ static enum status add_law(const struct mesofit_law *from, const char *name,
     return STATUS_OK;
 }
 
-enum status mf_scene_text_add_own(const struct mesofit_scene *from, struct scene *scene) {
+enum status mf_scene_words_add_own(const struct mesofit_scene *from, struct scene *scene) {
     TRY(add_law(&from->conservative, "conservative", mf_table_init_potential, &scene->potential,
                 &scene->setup.potential));
     TRY(add_law(&from->dissipative, "dissipative", mf_table_init_omega, &scene->omega,
