@@ -16,16 +16,16 @@ struct sampler_source {
     size_t size;
     /// Place the beads. @param[in] bins  in which pairs are counted
     enum status (*init)(void *own, const struct sampler_system *system,
-                        const struct pair_histogram *bins) MUST_USE;
+                        const struct pair_histogram *bins);
     void (*clear)(void *own);
     /// Place them again, without order; as mf_sampler_scatter.
-    enum status (*scatter)(void *own) MUST_USE;
+    enum status (*scatter)(void *own);
     /// With the potential as it is now; as mf_sampler_begin.
-    enum status (*begin)(void *own) MUST_USE;
+    enum status (*begin)(void *own);
     /// Sweeps that are not counted and tune what there is to tune.
-    enum status (*equilibrate)(void *own, uint64_t sweeps) MUST_USE;
+    enum status (*equilibrate)(void *own, uint64_t sweeps);
     /// Sweeps, then the pairs of the configuration that they lead to.
-    enum status (*run)(void *own, uint64_t sweeps, struct sampler_pairs *pairs) MUST_USE;
+    enum status (*run)(void *own, uint64_t sweeps, struct sampler_pairs *pairs);
     /// Part of what was tried that was taken, since equilibrate.
     double (*acceptance)(const void *own);
     const struct particles *(*particles)(const void *own);
