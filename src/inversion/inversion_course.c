@@ -133,6 +133,30 @@ bool mf_inversion_is_worth_keeping(const struct inversion *inversion,
                mf_inversion_assessment_noises(assessment, targets, progress->min) + 2;
 }
 
+/// Whether the present potential is so near to the best one that its samples tell what those of the
+/// best should have been, and did not: a small part of a step changes S by more than twice that
+/// part of what was off, and their noise. What is slow had not settled there.
+static bool belies_best(const struct inversion *inversion) {
+    static const double small = 0.125, times = 2;
+    const double *best = inversion->course.best.counts;
+    const double damping = inversion->course.progress.damping;
+    double changed = 0, off = 0, noise = 0;
+    if (!(damping <= small) || inversion->course.progress.has_other)
+        return false;
+    for (size_t s = 0; s < inversion->states; best += inversion->state[s++].bins) {
+        const struct inversion_state *state = &inversion->state[s];
+        for (size_t a = 0; a < state->grid.known; a++) {
+            const size_t bin = state->grid.known_bin[a];
+            if (!state->grid.seen[a])
+                continue;
+            changed += pow(state->replicas.counts.mean[bin] - best[bin], 2) / state->variance[a];
+            off += pow(state->target.counts[bin] - best[bin], 2) / state->variance[a];
+            noise += 2; // that of both samples at most
+        }
+    }
+    return changed > times * times * (damping * damping * off + noise);
+}
+
 bool mf_inversion_keeps(struct inversion *inversion) {
     struct inversion_progress *progress = &inversion->course.progress;
     const struct inversion_assessment *assessment = &inversion->assessment;
@@ -140,11 +164,14 @@ bool mf_inversion_keeps(struct inversion *inversion) {
     if (inversion->state->basis.count > 0)
         return keeps_by_gradient(inversion);
     const bool kept = mf_inversion_is_worth_keeping(inversion, assessment);
-    if (isinf(progress->best.distance[TARGET_RDF].rms) ||
+    const bool belied = !kept && belies_best(inversion);
+    if (belied)
+        progress->damping = 1;
+    if (belied || isinf(progress->best.distance[TARGET_RDF].rms) ||
         mf_inversion_assessment_noises(assessment, targets, assessment->distance) <
             mf_inversion_assessment_noises(assessment, targets, progress->min))
         memcpy(progress->min, assessment->distance, sizeof progress->min);
-    return kept;
+    return kept || belied;
 }
 
 enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) {

@@ -84,8 +84,10 @@ bool mf_inversion_is_worth_keeping(const struct inversion *inversion,
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
 /// third of the error, so that each could be 1.67 times as far as the one before, and so on.
-/// Remembers the nearest. By the gradient: unless what is still promised of S_rel, which is convex,
-/// is more than twice the least so far. Tested: test_inversion_keeps.
+/// Remembers the nearest. One that is hardly another than the best, and much worse, tells that the
+/// best one's samples had not settled: it is kept in its place. By the gradient: unless what is
+/// still promised of S_rel, which is convex, is more than twice the least so far. Tested:
+/// test_inversion_keeps.
 bool mf_inversion_keeps(struct inversion *inversion);
 
 /// Keep the present potential, or go back if it is worse than the nearest by more than chance.

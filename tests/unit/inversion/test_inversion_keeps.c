@@ -272,6 +272,37 @@ static void test_inversion_goes_back_for_the_part_that_all_states_tell(void **st
     assert_close(inversion->course.progress.damping, 0.3, 1e-12);
 }
 
+/// A fiftieth of a step makes g worse by as much as it was off: so bad it was before, too, and the
+/// fit goes on from there. It goes back where g is worse by no more than the noise, and from longer
+/// steps, which may well make it worse.
+static void test_inversion_goes_on_from_what_belies_the_best(void **state) {
+    (void)state;
+    static const struct {
+        double damping, excess;
+        bool kept;
+    } cases[] = {{0.02, 60, true}, {0.02, 2, false}, {0.5, 60, false}};
+    for (size_t n = 0; n < 3; n++) {
+        struct fit fit;
+        struct inversion *inversion = begin(&fit, false);
+        size_t bin = 0;
+        bool seen = true;
+        double now = 100 - cases[n].excess, best = 100, target = 150, variance = 1;
+        fit.state.bins = 1;
+        fit.state.grid = (struct potential_grid){.known = 1, .known_bin = &bin, .seen = &seen};
+        fit.state.replicas.counts.mean = &now;
+        fit.state.target.counts = &target;
+        fit.state.variance = &variance;
+        inversion->course.best.counts = &best;
+        assert_true(keeps(inversion, 0.1, 0.01));
+        inversion->course.progress.damping = cases[n].damping;
+        assert_int_equal(keeps(inversion, 0.2, 0.01), cases[n].kept);
+        if (cases[n].kept) {
+            assert_true(inversion->course.progress.damping == 1);
+            assert_true(keeps(inversion, 0.21, 0.01));
+        }
+    }
+}
+
 /// With 900 independent samples less than 100 directions.
 static void test_inversion_knows_directions_by_its_samples(void **state) {
     (void)state;
@@ -454,6 +485,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_shortens_steps_that_were_cut),
         cmocka_unit_test(test_inversion_relaxes_to_one_place_with_any_chosen_damping),
         cmocka_unit_test(test_inversion_goes_back_for_the_part_that_all_states_tell),
+        cmocka_unit_test(test_inversion_goes_on_from_what_belies_the_best),
         cmocka_unit_test(test_inversion_knows_directions_by_its_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
