@@ -146,6 +146,11 @@ static enum status check_no_folder(const char *file) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s is a folder: fit its file by mesofit fit %s/run.json", file,
                               file);
+    if (has_file(file, "summary.json"))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s is the folder of a result: fit its run file, or a copy of %s/used.json", file,
+            file);
     if (has_file(file, "target.json") || has_file(file, "rdf.tsv"))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s is a folder: fit the target in it by mesofit fit --target %s",

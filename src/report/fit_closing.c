@@ -192,8 +192,8 @@ void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
     print_friction(to, fit, unknowns, result);
     if (result->status == STATUS_OK)
         mf_progress_print(to,
-                          "next: figures and summary.json are in %s; mesofit export %s writes "
-                          "the model for another engine",
+                          "next: figures and summary.json are in %s; mesofit export %s "
+                          "--engine lammps writes the model for LAMMPS, or for another engine",
                           folder, folder);
     else
         mf_progress_print(
