@@ -146,7 +146,7 @@ static enum status check_no_folder(const char *file) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s is a folder: fit its file by mesofit fit %s/run.json", file,
                               file);
-    if (has_file(file, "summary.json"))
+    if (has_file(file, "history.tsv"))
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "%s is the folder of a result: fit its run file, or a copy of %s/used.json", file,

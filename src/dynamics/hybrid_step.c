@@ -145,8 +145,9 @@ struct hybrid_step mf_hybrid_step_find(const struct table *potential,
         step.first = step.longest = longest_step(shortest_weight(many_body), temperature);
     if (molecules == NULL)
         return step;
-    const double fast = share / sqrt(fastest_by(molecules, temperature, narrow_variance));
-    step.inner = (int64_t)fmax(1, fmin(MAX, ceil(step.first / fast)));
-    step.first = fmin(step.first, (double)step.inner * fast);
+    const double fast = share / sqrt(mf_hybrid_step_fastest(molecules, temperature));
+    const double narrow = share / sqrt(fastest_by(molecules, temperature, narrow_variance));
+    step.first = fmin(step.first, MAX * fast);
+    step.inner = (int64_t)fmax(1, fmin(MAX, ceil(step.first / narrow)));
     return step;
 }

@@ -176,15 +176,19 @@ static bool contradicts_integrals(const struct verification *verification, doubl
     return true;
 }
 
-/// "T = 1.02, pressure 3.4".
+/// "T = 1.02, pressure 3.4"; molecules that move by moves tell no temperature.
 enum { STATE_SIZE = 96 };
 static void report_state(const struct thermodynamics_summary *found, const struct units *units,
                          char text[STATE_SIZE]) {
     const double temperature =
         isnan(found->temperature) ? found->temperature_configurational : found->temperature;
     char unit[UNITS_NAME_SIZE], kelvin[UNITS_NAME_SIZE];
-    snprintf(text, STATE_SIZE, "T = %.3g%.8s, pressure %.3g%.16s",
-             mf_units_factor(units, "T_0") * temperature, mf_units_suffix(units, "T_0", kelvin),
+    int length = 0;
+    if (!isnan(temperature))
+        length = snprintf(text, STATE_SIZE, "T = %.3g%.8s, ",
+                          mf_units_factor(units, "T_0") * temperature,
+                          mf_units_suffix(units, "T_0", kelvin));
+    snprintf(text + length, STATE_SIZE - (size_t)length, "pressure %.3g%.16s",
              mf_units_factor(units, "k_B T_0/lambda^d") * found->pressure,
              mf_units_suffix(units, "k_B T_0/lambda^d", unit));
 }

@@ -90,7 +90,7 @@ static void test_fit_target_tells_what_goes_together(void **state) {
     run_program_assert_code(&result, 2);
     assert_contains(result.err,
                     "target is a folder: fit the target in it by mesofit fit --target target");
-    small_inputs_write(*state, "target/summary.json", "{}", NULL, NULL);
+    small_inputs_write(*state, "target/history.tsv", "0\n", NULL, NULL);
     RUN_PROGRAM(&result, "fit", "target");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "target is the folder of a result: fit its run file");
