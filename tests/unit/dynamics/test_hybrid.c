@@ -2,9 +2,12 @@
 #include "dynamics/hybrid.h"
 
 #include "base/statistics.h"
+#include "curves/bonded_table.h"
 #include "curves/formula.h"
+#include "dynamics/hybrid_step.h"
 #include "shared/is_close.h"
 #include "shared/many_bodies.h"
+#include "shared/molecules.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -48,6 +51,38 @@ static void test_hybrid_begins_with_the_step_of_the_stiffest_pairs(void **state)
     }
     mf_table_clear(&soft);
     mf_table_clear(&stiff);
+}
+
+/// The step of dimers whose bond is a table of 100 (r − 1)², each second value higher by `noise`.
+static struct hybrid_step step_of_table(double noise) {
+    enum { POINTS = 200 };
+    static const int type[] = {0, 0};
+    double q[POINTS], energy[POINTS];
+    struct molecules molecules = {0};
+    struct formula_soft_repulsion_parameters soft = {25, 1};
+    struct table table;
+    assert_ok(mf_table_init_potential(&table, &(struct curve){&mf_formula_soft_repulsion, &soft}));
+    molecules_topology(&molecules.topology, molecules_chain(20, type, 2, 0, 1),
+                       (struct topology_kind){0}, 1, NULL);
+    molecules_add_group(&molecules, BONDED_BOND, &mf_bond_table, NULL);
+    for (int k = 0; k < POINTS; k++) {
+        q[k] = 0.01 * k;
+        energy[k] = 100 * pow(q[k] - 1, 2) + (k % 2) * noise;
+    }
+    assert_ok(
+        mf_bonded_table_set_points(&molecules.group[BONDED_BOND][0].curve, q, energy, POINTS));
+    const struct hybrid_step step = mf_hybrid_step_find(&table, &molecules, NULL, 1);
+    mf_molecules_clear(&molecules);
+    mf_table_clear(&table);
+    return step;
+}
+
+/// Noise of a table adds inner steps, and shortens no step of the pairs: nothing would move.
+static void test_hybrid_follows_noise_of_tables_by_inner_steps(void **state) {
+    (void)state;
+    const struct hybrid_step smooth = step_of_table(0), noisy = step_of_table(0.1);
+    assert_true(noisy.inner > smooth.inner);
+    assert_close(noisy.first, smooth.first, 1e-12);
 }
 
 /// Without pairs it is a share of the weight's range, over which the forces change.
@@ -123,6 +158,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hybrid_samples_exactly_by_later_chances),
         cmocka_unit_test(test_hybrid_begins_with_the_step_of_the_stiffest_pairs),
+        cmocka_unit_test(test_hybrid_follows_noise_of_tables_by_inner_steps),
         cmocka_unit_test(test_hybrid_of_local_densities_alone_has_a_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
