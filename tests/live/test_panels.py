@@ -84,7 +84,7 @@ class Panels(PageTest):
                    "conservative": {"law": "soft-repulsion", "a": 25}, "dissipative": {"law": "power", "sigma": 3},
                    "measure": {"equilibration": 50, "samples": 10, "every": 10}}
         nm = {**reduced, "units": "nm-ps", "temperature": 298, "particles": {"count": 375, "mass": 18},
-              "conservative": {"law": "soft-repulsion", "a": 25}}
+              "conservative": {"law": "soft-repulsion", "a": 25, "cutoff": 1}, "dissipative": {"law": "power", "sigma": 3, "cutoff": 1}}
         self.run_file("reduced.json", reduced, "reduced")
         self.run_file("again.json", {**reduced, "seed": 8}, "again")
         self.run_file("nm.json", nm, "nm")
