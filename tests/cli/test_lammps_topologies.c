@@ -188,15 +188,16 @@ static void test_our_own_export_is_read_again(void **state) {
         "    \"3\": {\"law\": \"harmonic\", \"k\": 2993.208496, \"length\": 0.45}},\n"
         "  \"molecules\": {\"file\": \"lammps/data.mesofit\", \"units\": \"real\", \"exclude\": "
         "2},\n"
-        "  \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 1},\n"
+        "  \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 1, \"cutoff\": 0.6},\n"
         "  \"bond_lengths\": {}, \"measure\": {\"equilibration\": 0, \"samples\": 1, \"every\": "
         "1}}\n";
     static struct run_program_result result;
     static char text[DATA_SIZE];
     read_fixture(text);
-    small_inputs_write(*state, "scene.json", scene, "\"bond_lengths",
-                       "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 1}, "
-                       "\"bond_lengths");
+    small_inputs_write(
+        *state, "scene.json", scene, "\"bond_lengths",
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 1, \"cutoff\": 0.6}, "
+        "\"bond_lengths");
     // Without angles and dihedrals.
     char *angles = strstr(text, "Angles\n");
     assert_non_null(angles);
