@@ -15,11 +15,11 @@ enum { TURNS = 25 };
 /// A trajectory goes on so often where its end is not taken. To be turned round undoes what came
 /// before, as the particles go back the way they came: what is slow takes 3 to 9 times as long with
 /// one chance (lab/samplers.md).
-enum { CHANCES = 10 };
+enum { CHANCES = 16 };
 
 /// Share of trajectories that are taken at their first chance, to which the time step is tuned, and
 /// how fast.
-static const double wanted_acceptance = 0.85, gain = 0.05;
+static const double wanted_acceptance = 0.8, gain = 0.05;
 
 enum status mf_hybrid_init(struct hybrid *hybrid, const struct box *box,
                            const struct composition *composition, const struct table *potential,

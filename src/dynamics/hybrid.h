@@ -56,7 +56,7 @@ enum status mf_hybrid_scatter(struct hybrid *hybrid) MUST_USE;
 /// that continues and one that was reloaded here go on with the same bits. Fails: NO_MEMORY.
 enum status mf_hybrid_refresh(struct hybrid *hybrid) MUST_USE;
 
-/// Trajectories whose time step is tuned until 85 % are taken at their first chance. Fails:
+/// Trajectories whose time step is tuned until four of five are taken at their first chance. Fails:
 /// NO_MEMORY, INTERRUPTED.
 enum status mf_hybrid_equilibrate(struct hybrid *hybrid, uint64_t trajectories) MUST_USE;
 

@@ -88,7 +88,7 @@ static void test_replicas_scatter_their_particles_when_the_plan_says_so(void **s
     fluid_clear(&fluid);
 }
 
-/// Equilibration tunes moves to 40 % (mf_metropolis_equilibrate) and trajectories to 85 % at their
+/// Equilibration tunes moves to 40 % (mf_metropolis_equilibrate) and trajectories to 80 % at their
 /// first chance (mf_hybrid_equilibrate), of which some hundredths are left at their last; a gas
 /// without a potential takes all. Of 8 · 4 · 216 moves and 8 · 40 trajectories; the tuning itself
 /// scatters by some hundredths.
