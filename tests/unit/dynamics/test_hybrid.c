@@ -80,7 +80,7 @@ static struct hybrid_step step_of_table(double noise) {
 /// Noise of a table adds inner steps, and shortens no step of the pairs: nothing would move.
 static void test_hybrid_follows_noise_of_tables_by_inner_steps(void **state) {
     (void)state;
-    const struct hybrid_step smooth = step_of_table(0), noisy = step_of_table(0.1);
+    const struct hybrid_step smooth = step_of_table(0), noisy = step_of_table(0.02);
     assert_true(noisy.inner > smooth.inner);
     assert_close(noisy.first, smooth.first, 1e-12);
 }
