@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands/command.h"
 #include "base/ranks.h"
+#include "engines/engine_door.h"
 #include "io/json.h"
 #include "io/output.h"
 #include "io/text_file.h"
@@ -11,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, FRICTION, LIVE };
+enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, FRICTION, ENGINE, LIVE };
 
 /// Of --explain.
 enum { MAX_RANKS = 100000 };
@@ -28,6 +29,7 @@ static const struct command_option options[] = {
                      "temperature of the target, without target.json; else 1"},
     [FRICTION] = {"--friction", "free|exportable|linear",
                   "omega: any, one that LAMMPS runs, or HOOMD and ESPResSo too"},
+    [ENGINE] = {"--engine", "COMMAND", "what runs the \"engine\" of the run file, which samples"},
     [LIVE] = COMMAND_LIVE_OPTION,
     {NULL, NULL, NULL},
 };
@@ -75,12 +77,14 @@ static enum status run_with(const char *file, const struct command_line *line,
                             const struct json_word *words, size_t count) {
     struct json_word all[FIT_WORDS];
     struct command_line own = *line;
+    const struct engine_door door = mf_engine_door(line->own[ENGINE]);
     for (size_t k = 0; k < count; k++)
         all[k] = words[k];
     if (line->own[FRICTION])
         all[count++] = (struct json_word){.key = "friction", .text = line->own[FRICTION]};
     own.options.words = all;
     own.options.word_count = count;
+    own.options.engine = &door;
     return run_whole(file, &own);
 }
 

@@ -6,6 +6,7 @@
 #include "base/names.h"
 #include "defaults/fit_defaults.h"
 #include "defaults/fit_densities.h"
+#include "defaults/fit_engine.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
 #include "defaults/methods.h"
@@ -157,6 +158,7 @@ static enum status read_root(struct fit_file *fit, struct json_object *root,
     TRY(mf_fit_unknowns_read(fit, root));
     TRY(mf_fit_densities_read(fit, root));
     TRY(read_method(fit, root));
+    mf_fit_engine_read(fit, root);
     struct json_object core = mf_json_child(root, "core", false);
     fit->core_given = mf_json_fields(&core, mf_fit_core_fields, &fit->core);
     if (core.item)
@@ -329,6 +331,7 @@ enum status mf_fit_file_check(struct fit_file *fit, const char *file) {
         struct fit_file *state = mf_fit_states_at(fit, s);
         TRY(mf_fit_states_mark(state, mf_fit_check(state, file)));
     }
+    TRY(mf_fit_engine_check(fit, file));
     return mf_fit_base_find(fit);
 }
 
@@ -394,6 +397,7 @@ void mf_fit_file_write(const struct fit_file *fit, struct json_writer *writer) {
         mf_json_write_fields(writer, table->fields,
                              (const char *)fit->method_parameters + table->offset);
     mf_json_end(writer);
+    mf_fit_engine_write(fit, writer);
     mf_json_begin(writer, "core");
     mf_json_write_fields(writer, mf_fit_core_fields, &fit->core);
     mf_json_end(writer);

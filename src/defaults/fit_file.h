@@ -82,6 +82,7 @@ struct fit_file {
     size_t numbers;
     struct fit_core core;
     uint64_t core_given; ///< which fields the file says
+    struct engine_settings engine; ///< who samples
     const struct inverse_method *method;
     void *method_parameters;
     struct verify_parameters verification;

@@ -20,6 +20,11 @@ struct integrator_number {
     double value;     ///< without a unit
 };
 
+/// Temperature and pressure of a configuration [k_B T_0], [k_B T_0/λ^d]; NaN: not known.
+struct integrator_told {
+    double temperature, pressure;
+};
+
 struct integrator {
     const char *name;
     const char *summary;        ///< method and citation, one line
@@ -48,6 +53,9 @@ struct integrator {
     /// Draws configurations of the canonical ensemble: a step is a sweep, and there are neither
     /// velocities nor time nor forces. Who looks at a configuration has its forces computed.
     bool samples;
+    /// What is known of the present configuration from elsewhere, of whose potential ours is but a
+    /// part. NULL: all is ours.
+    const struct integrator_told *(*tell)(const void *state);
     /// The time step is a property of what is modelled, and no approximation: fits may look for it.
     bool model_time_step;
     /// Tells a simulation's `transfer` all impulses of pairs: those that are forces when these are

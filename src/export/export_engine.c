@@ -272,9 +272,7 @@ static double step_of_bonds(const struct export_model *model) {
                     mf_hybrid_step_fastest(model->molecules, model->setup.temperature));
 }
 
-/// The step of the result, shortened if its configurational temperature, which is off as Δt²,
-/// shows that it is long: by what is beyond two errors, as the rest may be chance.
-static double safe_step(const struct export_model *model) {
+double mf_export_safe_step(const struct export_model *model) {
     const struct export_number *found = &model->configurational;
     const double wrong = (fabs(found->value - model->setup.temperature) - 2 * found->error) /
                          model->setup.temperature; // NaN: not known
@@ -288,7 +286,7 @@ static enum status run(struct export_job *job, const struct export_request *requ
     struct tracked_files own = {.open = false};
     TRY(check(job, request->bands));
     job->units = mf_export_units(job->engine->system, &model->scene.units, job->engine->physical);
-    job->time_step = safe_step(model);
+    job->time_step = mf_export_safe_step(model);
     TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, request->bands,
                              job->engine->one_cutoff ? model->setup.potential->cutoff : 0));
     CHECK(mf_export_bonded_make(&job->bonded, model, job->engine->has_law));

@@ -130,6 +130,11 @@ bool mf_export_is_linear(const struct export_job *job);
 /// friction. For thermostats that keep g(r) and not the motion.
 double mf_export_slowing(const struct export_job *job);
 
+/// The step of the result, shortened if its configurational temperature, which is off as Δt²,
+/// shows that it is long: by what is beyond two errors, as the rest may be chance; and as bonds ask
+/// for [τ].
+double mf_export_safe_step(const struct export_model *model);
+
 /// A coordinate in the box, [0, length).
 double mf_export_place(const struct export_model *model, int axis, size_t particle);
 

@@ -48,7 +48,7 @@ static void print_head(const struct export_job *job, FILE *stream) {
                 model->name[type]);
 }
 
-static void print_data(const struct export_job *job, FILE *stream) {
+void mf_export_lammps_print_data(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const struct export_units *units = &job->units;
     print_head(job, stream);
@@ -110,7 +110,7 @@ static void print_omega(const struct export_job *job, int pair, FILE *stream) {
     }
 }
 
-static void print_table(const struct export_job *job, FILE *stream) {
+void mf_export_lammps_print_table(const struct export_job *job, FILE *stream) {
     fprintf(stream, "# UNITS: %s\n# r[%s] energy[%s] force[%s/%s]; omega[sqrt(%s %s)/%s]\n",
             is_real(job) ? "real" : "lj", job->units.length_name, job->units.energy_name,
             job->units.energy_name, job->units.length_name, job->units.energy_name,
@@ -240,7 +240,7 @@ static void print_measurements(const struct export_job *job, FILE *stream) {
 }
 
 /// What there is, up to its bonds. Ghosts reach as far as lists, g(r) and terms do.
-static void print_system(const struct export_job *job, FILE *stream) {
+void mf_export_lammps_print_system(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const double skin = choose_skin(job);
     const double reach =
@@ -296,7 +296,7 @@ static void print_input(const struct export_job *job, FILE *stream) {
     mf_export_dynamics_print(job, "# ", stream);
     fprintf(stream, "\n");
     print_place(job, stream);
-    print_system(job, stream);
+    mf_export_lammps_print_system(job, stream);
     print_thermostat(job, stream);
     fprintf(stream,
             "\nfix move all nve\n%stimestep %.9g\nthermo 1000\n"
@@ -309,8 +309,8 @@ static void print_input(const struct export_job *job, FILE *stream) {
 }
 
 static enum status write(const struct export_job *job) {
-    TRY(mf_export_file(job, "mesofit.table", print_table));
-    TRY(mf_export_file(job, "data.mesofit", print_data));
+    TRY(mf_export_file(job, "mesofit.table", mf_export_lammps_print_table));
+    TRY(mf_export_file(job, "data.mesofit", mf_export_lammps_print_data));
     TRY(mf_export_lammps_write_densities(job));
     return mf_export_file(job, "in.mesofit", print_input);
 }

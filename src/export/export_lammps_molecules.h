@@ -28,6 +28,12 @@ void mf_export_lammps_tables(const struct export_job *job, FILE *stream);
 void mf_export_lammps_styles(const struct export_job *job, FILE *stream);
 void mf_export_lammps_coefficients(const struct export_job *job, FILE *stream);
 
+/// The data file: box, masses, positions, velocities, terms; the table file: all potentials and
+/// friction weights; the input up to the bonds, which reads data.mesofit.
+void mf_export_lammps_print_data(const struct export_job *job, FILE *stream);
+void mf_export_lammps_print_table(const struct export_job *job, FILE *stream);
+void mf_export_lammps_print_system(const struct export_job *job, FILE *stream);
+
 /// How far apart beads of one term may be [λ]; 0 without molecules.
 double mf_export_lammps_reach(const struct export_model *model);
 

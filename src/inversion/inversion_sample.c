@@ -150,12 +150,18 @@ static bool is_hopeless(struct sampling *sampling) {
     return assessment->unequilibrated.for_long || worse || poor;
 }
 
+/// Replicas that are sampled side by side.
+static int threads_of(const struct inverse_problem *problem) {
+    const struct sampling_engine *engine = problem->engine;
+    return engine && engine->at_once > 0 ? engine->at_once : problem->threads;
+}
+
 /// Take samples by the plan, all of them or as many again.
 static enum status take(struct sampling *sampling, bool again) {
     struct inversion_state *state = sampling->state;
     struct replicas_plan *now = &sampling->plan;
     const struct inverse_listener *listener = sampling->listener;
-    const int threads = state->problem->threads;
+    const int threads = threads_of(state->problem);
     if (again) {
         listener->report(listener->context, &sampling->progress); // it takes as long as all before
         TRY(mf_replicas_double(&state->replicas, now, threads, &sampling->progress, listener));
@@ -190,6 +196,31 @@ static enum status settle(struct sampling *sampling) {
     return take(sampling, false);
 }
 
+/// Sample until they have settled and are exact enough, or are given up.
+static enum status sample_all(struct sampling *sampling) {
+    struct inversion_state *state = sampling->state;
+    const struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
+    TRY(take(sampling, false));
+    sampling->progress.done = sampling->progress.total = (uint64_t)state->parameters->replicas;
+    for (;;) {
+        const bool waits = unequilibrated->found && !mf_inversion_is_far_beyond_drift(state);
+        if (waits && is_hopeless(sampling))
+            return STATUS_OK;
+        if (waits)
+            TRY(settle(sampling));
+        else if (needs_samples(state, &sampling->progress.doubling))
+            TRY(take(sampling, true));
+        else
+            return STATUS_OK;
+    }
+}
+
+/// Whether another engine could not sample the potential, while there is one to go back to.
+static bool is_unstable(const struct inversion *inversion, enum status status) {
+    return status == STATUS_UNSTABLE &&
+           isfinite(inversion->course.progress.best.distance[TARGET_RDF].rms);
+}
+
 enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,
                                 const struct inverse_listener *listener) {
     const struct inversion_progress *progress = &inversion->course.progress;
@@ -210,22 +241,13 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     unequilibrated->for_long = false;
     TRY(mf_inversion_tabulate(state));
     state->work.evaluations += replicas;
-    TRY(take(&sampling, false));
-    sampling.progress.done = sampling.progress.total = replicas;
-    for (;;) {
-        const bool waits = unequilibrated->found && !mf_inversion_is_far_beyond_drift(state);
-        if (waits && is_hopeless(&sampling))
-            break;
-        if (waits)
-            TRY(settle(&sampling));
-        else if (needs_samples(state, &sampling.progress.doubling))
-            TRY(take(&sampling, true));
-        else
-            break;
-    }
+    const enum status status = sample_all(&sampling);
+    const bool unstable = is_unstable(inversion, status);
+    TRY(unstable ? STATUS_OK : status);
     unequilibrated->sweeps = sampling.sweeps;
     state->work.memory = state->inefficiency * (double)sampling.plan.every;
-    state->assessment.useless = unequilibrated->found && !mf_inversion_is_far_beyond_drift(state);
+    state->assessment.useless =
+        unstable || (unequilibrated->found && !mf_inversion_is_far_beyond_drift(state));
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

@@ -13,7 +13,7 @@ static const double max_distortion = 0.2;
 /// As many particles as are asked for, at the densities of the scene.
 static enum status choose_size(struct inversion_state *state) {
     const struct simulation_setup *scene = &state->problem->scene;
-    const int64_t wanted = state->parameters->particles;
+    const int64_t wanted = state->problem->engine ? 0 : state->parameters->particles;
     const int64_t count = mf_composition_particles(&scene->composition);
     if (wanted > 0 && wanted != count && mf_molecules_find(scene->interaction, scene->interactions))
         return mf_status_fail(STATUS_BAD_INPUT,
@@ -172,6 +172,7 @@ enum status mf_inversion_state_make_samplers(struct inversion_state *state) {
                                  .groups = state->grid.groups,
                                  .integrals = state->kirkwood_buff.pairs,
                                  .q_maximum = state->kirkwood_buff.q_maximum,
+                                 .engine = problem->engine,
                                  .seed = problem->seed});
 }
 

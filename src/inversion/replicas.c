@@ -41,11 +41,12 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
     enum status status = STATUS_OK;
     const size_t bins = mf_sampler_bins(system), numbers = mf_sampler_numbers(system);
     struct sampler_system own = *system;
-    *replicas = (struct replicas){
-        .bins = bins,
-        .numbers = numbers,
-        .count = count,
-        .begins = {[REPLICAS_STRETCH] = has_chains(system), [REPLICAS_TILT] = is_mixture(system)}};
+    *replicas =
+        (struct replicas){.bins = bins,
+                          .numbers = numbers,
+                          .count = count,
+                          .begins = {[REPLICAS_STRETCH] = !system->engine && has_chains(system),
+                                     [REPLICAS_TILT] = !system->engine && is_mixture(system)}};
     CHECK(mf_comoments_init(&replicas->counts, numbers));
     for (size_t k = 0; k < count; k++) {
         struct replica *replica = &replicas->member[k];
@@ -53,6 +54,7 @@ enum status mf_replicas_init(struct replicas *replicas, size_t count, enum sampl
         NEW_ARRAY(replica->block, REPLICAS_BLOCKS * numbers);
         CHECK(mf_comoments_init(&replica->counts, numbers));
         own.seed = mf_rng_child_seed(system->seed, RNG_EVALUATION, (uint32_t)k, 0);
+        own.replica = k;
         own.bias = begin_apart(replicas, k);
         CHECK(mf_sampler_init(&replica->sampler, kind, &own));
     }
@@ -76,6 +78,8 @@ void mf_replicas_clear(struct replicas *replicas) {
 static enum status fill_blocks(struct replica *replica, size_t numbers, size_t first, size_t last,
                                const struct replicas_plan *plan) {
     const double each = (double)plan->block_samples, begun = clock_thread_seconds();
+    TRY(mf_sampler_plan(&replica->sampler, (last - first) * (uint64_t)plan->block_samples,
+                        (uint64_t)plan->every));
     for (size_t block = first; block < last; block++) {
         double *mean = replica->block + block * numbers;
         memset(mean, 0, numbers * sizeof *mean);

@@ -50,7 +50,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
     if (kind == SAMPLER_AUTO)
         kind = system->molecules || system->many_body ? SAMPLER_DYNAMICS : SAMPLER_MONTE_CARLO;
     *sampler =
-        (struct sampler){.source = sources[kind],
+        (struct sampler){.source = system->engine ? &mf_sampler_engine : sources[kind],
                          .molecules = system->molecules,
                          .composition = *system->composition,
                          .bins = {.low = system->low,
@@ -97,6 +97,10 @@ enum status mf_sampler_begin(struct sampler *sampler) {
 
 enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
     return sampler->source->equilibrate(sampler->own, sweeps);
+}
+
+enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) {
+    return sampler->source->plan ? sampler->source->plan(sampler->own, samples, every) : STATUS_OK;
 }
 
 double mf_sampler_acceptance(const struct sampler *sampler) {

@@ -11,6 +11,7 @@
 #include "observe/bonded_distribution.h"
 #include "observe/density_list.h"
 #include "observe/kirkwood_buff_waves.h"
+#include "problem/sampling_engine.h"
 #include "system/whole_molecules.h"
 
 enum sampler_kind {
@@ -61,6 +62,8 @@ struct sampler_system {
     size_t groups;
     size_t integrals; ///< of Kirkwood and Buff: pairs of components, if they are asked for, or 0
     double q_maximum; ///< of their waves, as of mf_kirkwood_buff_waves_init [1/λ]
+    const struct sampling_engine *engine; ///< that samples, or NULL: we
+    size_t replica;                       ///< which of its replicas this is
     uint64_t seed;
     struct placement_bias bias; ///< of where it begins
     const atomic_bool *cancel;  ///< stops the sweeps once it is set, or NULL
@@ -100,6 +103,9 @@ enum sampler_sum {
     SAMPLER_WAVES, ///< of a mixture Σ_a |ρ_a(q)|²/N_a of types a, q along the longest edge [1]
     SAMPLER_SUMS,
 };
+
+/// So many samples come next, with so many sweeps between them. Fails: as sampling_engine.begin.
+enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) MUST_USE;
 
 /// Sweeps, then a sample: S of each bin of each pair type and of each group, then the sums,
 /// then the integrals of the configuration, then of the bins of each group of local densities the

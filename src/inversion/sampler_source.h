@@ -24,6 +24,8 @@ struct sampler_source {
     enum status (*begin)(void *own);
     /// Sweeps that are not counted and tune what there is to tune.
     enum status (*equilibrate)(void *own, uint64_t sweeps);
+    /// So many samples come next, with so many sweeps between them; NULL: that does not matter.
+    enum status (*plan)(void *own, uint64_t samples, uint64_t every);
     /// Sweeps, then the pairs of the configuration that they lead to.
     enum status (*run)(void *own, uint64_t sweeps, struct sampler_pairs *pairs);
     /// Part of what was tried that was taken, since equilibrate.
@@ -33,8 +35,9 @@ struct sampler_source {
     size_t (*spans)(void *own, struct memory_span *span);
 };
 
-/// Single moves (dynamics/metropolis.h) and trajectories (dynamics/hybrid.h).
-extern const struct sampler_source mf_sampler_moves, mf_sampler_trajectories;
+/// Single moves (dynamics/metropolis.h), trajectories (dynamics/hybrid.h), another program
+/// (problem/sampling_engine.h).
+extern const struct sampler_source mf_sampler_moves, mf_sampler_trajectories, mf_sampler_engine;
 
 /// Positions and ids of the particles, in their order; returns the number of spans.
 size_t mf_sampler_place_spans(struct particles *particles, struct memory_span *span);

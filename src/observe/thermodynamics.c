@@ -52,10 +52,19 @@ done:
     return status;
 }
 
+static const struct integrator_told *told_of(const struct simulation *simulation) {
+    const struct integrator *integrator = simulation->setup.integrator;
+    return integrator->tell ? integrator->tell(simulation->integrator_state) : NULL;
+}
+
 enum status mf_thermodynamics_temperature(const struct simulation *simulation, double *above,
                                           double *below) {
     *above = mf_simulation_temperature(simulation);
     *below = 1;
+    if (told_of(simulation)) {
+        *above = told_of(simulation)->temperature;
+        return STATUS_OK;
+    }
     if (simulation_has_velocities(&simulation->setup) || simulation->law.potential == NULL)
         return STATUS_OK;
     return configurational(simulation, above, below);
@@ -65,12 +74,17 @@ enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
                                      const struct simulation *simulation) {
     double here[THERMODYNAMICS_QUANTITIES] = {0};
     const double count = (double)simulation->particles.count;
+    const struct integrator_told *told = told_of(simulation);
     here[THERMODYNAMICS_TEMPERATURE] = mf_simulation_temperature(simulation);
     here[THERMODYNAMICS_POTENTIAL_ENERGY] = simulation->sums.energy / count;
     here[THERMODYNAMICS_PRESSURE] = mf_simulation_pressure(simulation);
     here[THERMODYNAMICS_TOTAL_ENERGY] =
         (simulation->sums.energy + mf_particles_kinetic_energy(&simulation->particles)) / count;
-    if (simulation->law.potential)
+    if (told) {
+        here[THERMODYNAMICS_TEMPERATURE] = told->temperature;
+        here[THERMODYNAMICS_PRESSURE] = told->pressure;
+    }
+    if (simulation->law.potential && !told)
         TRY(configurational(simulation, &here[THERMODYNAMICS_FORCE_SQUARES],
                             &here[THERMODYNAMICS_LAPLACIAN]));
     return mf_sample_series_add(&thermodynamics->series, here);

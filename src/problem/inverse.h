@@ -12,6 +12,7 @@
 #include "forces/many_body.h"
 #include "observe/bonded_distribution.h"
 #include "optimise/optimiser.h"
+#include "problem/sampling_engine.h"
 #include "problem/targets.h"
 
 /// Φ, and the friction weights: ω of white friction, those of the modes of memory
@@ -170,6 +171,7 @@ struct inverse_problem {
     struct simulation_setup scene;           ///< all but the unknowns; its composition is set
     double core_threshold;                   ///< g* beyond the core is above this, and two errors
     double core_stiffness;                   ///< of the core (mf_core_fill) [k_B T_0/λ²]
+    const struct sampling_engine *engine;    ///< samples in the place of ours; NULL: none
     uint64_t seed;
     int threads;
     bool trial; ///< a method is made only to refuse what it cannot fit, and makes no more than that

@@ -8,15 +8,20 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/motion.h"
 #include "observe/stationary.h"
+#include "problem/engine_replay.h"
 #include "problem/group_kind.h"
 #include "problem/verify_agreement.h"
 
 #include <math.h>
 
+static const char *const by[] = {"auto", "mesofit", "engine", NULL};
 static const char *const no_or_yes[] = {"no", "yes", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct verify_parameters, name)
 const struct field mf_verify_fields[] = {
+    {"by", FIELD_CHOICE, MEMBER(by), .choices = by, .initial = VERIFY_BY_AUTO, .unit = "",
+     .help = "who simulates; auto: the \"engine\" if it is a command or has an \"input\", else "
+             "mesofit"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 4, .minimum = 1, .maximum = 1024,
      .unit = "", .help = "independent simulations"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
@@ -54,9 +59,45 @@ struct work {
         *begin; ///< where they begin, shape [replicas, dimensions, particles]; NULL: as the scene
     const struct inverse_listener *listener;
     struct measurement *replicas;
+    struct engine_replay *replay; ///< shape [replicas]; NULL: we simulate
     struct inverse_progress progress;
     uint64_t taken; ///< samples of each replica since the last look
 };
+
+/// With the frames of another engine in the place of time steps.
+static enum status replay_replica(const struct work *work, size_t number,
+                                  const struct measurement_setup *setup) {
+    struct inverse_problem problem = *work->problem;
+    struct engine_piece *piece = &work->replay[number].piece;
+    piece->seed = setup->seed;
+    piece->potential = work->potential;
+    piece->molecules = mf_molecules_find(problem.scene.interaction, problem.scene.interactions);
+    problem.scene.integrator = &mf_engine_replay;
+    problem.scene.integrator_parameters = &work->replay[number];
+    return mf_measurement_init(&work->replicas[number], &problem, setup);
+}
+
+/// What the engine is asked for: as many time steps as we would take, and of the measurement a
+/// frame a step.
+static enum status ask_engine(struct work *work) {
+    struct verify_parameters *parameters = &work->parameters;
+    struct measure_plan *plan = &parameters->plan;
+    const struct inverse_problem *problem = work->problem;
+    const int64_t steps = problem->engine->steps;
+    TRY_ARRAY(work->replay, (size_t)parameters->replicas);
+    for (int64_t k = 0; k < parameters->replicas; k++)
+        work->replay[k] = (struct engine_replay){
+            .engine = problem->engine,
+            .piece = {.replica = (size_t)k,
+                      .fresh = true,
+                      .temperature = problem->scene.temperature,
+                      .lead = (uint64_t)((plan->equilibration + steps - 1) / steps),
+                      .frames = (uint64_t)plan->samples,
+                      .every = (uint64_t)((plan->every + steps - 1) / steps)}};
+    *plan = (struct measure_plan){.samples = plan->samples, .every = 1};
+    parameters->end_early = 0;
+    return STATUS_OK;
+}
 
 static enum status begin_replica(void *context, size_t number, void *result) {
     const struct work *work = context;
@@ -78,7 +119,8 @@ static enum status begin_replica(void *context, size_t number, void *result) {
         .threads = 1,
         .seed = mf_rng_child_seed(work->problem->seed, RNG_VERIFICATION, (uint32_t)number,
                                   work->attempt)};
-    return mf_measurement_init(&work->replicas[number], work->problem, &setup);
+    return work->replay ? replay_replica(work, number, &setup)
+                        : mf_measurement_init(&work->replicas[number], work->problem, &setup);
 }
 
 /// A simulation that is far too hot is not sampled if a shorter step is to follow: by a tenth and
@@ -301,7 +343,7 @@ static enum status run_until_settled(struct work *work, struct verification *ver
         TRY(mf_verify_equilibrium(work->replicas, count, verification->unequilibrated));
         for (size_t k = 0; k < count; k++)
             verification->engine_steps += work->replicas[k].simulation.step;
-        if (verification->unequilibrated[0] == '\0' || attempt == MAX_ATTEMPTS)
+        if (verification->unequilibrated[0] == '\0' || attempt == MAX_ATTEMPTS || work->replay)
             return STATUS_OK;
         work->parameters.plan.every *= 2;
         TRY(go_on(work));
@@ -319,6 +361,8 @@ static enum status verify_once(struct work *work, struct verification *verificat
     *off = (struct thermodynamics_off){.known = false};
     NEW_ARRAY(replicas, count);
     work->replicas = replicas;
+    if (work->problem->engine)
+        CHECK(ask_engine(work));
     CHECK(run_until_settled(work, verification));
     CHECK(summarise(replicas, count, verification));
     *off = mf_thermodynamics_off(&verification->thermodynamics, &replicas->simulation.setup);
@@ -329,7 +373,9 @@ done:
     clear_replicas(replicas, count);
     mf_memory_free(replicas);
     mf_memory_free(work->begin);
+    mf_memory_free(work->replay);
     work->begin = NULL;
+    work->replay = NULL;
     return status;
 }
 
@@ -347,8 +393,8 @@ enum status mf_verify(const struct inverse_problem *problem, const struct table 
                       const struct inverse_listener *listener, struct verification *verification) {
     const double first =
         parameters->time_step > 0 ? parameters->time_step : problem->scene.time_step;
-    struct verify_step step =
-        mf_verify_step_begin(problem, potential, first, parameters->shorten == 1);
+    struct verify_step step = mf_verify_step_begin(
+        problem, potential, first, parameters->shorten == 1 && problem->engine == NULL);
     struct work work = {
         .problem = problem, .potential = potential, .omega = omega, .listener = listener};
     *verification = (struct verification){0};

@@ -6,7 +6,11 @@
 #include "problem/verify_agreement.h"
 #include "problem/verify_step.h"
 
+/// Who simulates: mesofit, but the engine of a fit where that may know more than the scene does.
+enum verify_by { VERIFY_BY_AUTO, VERIFY_BY_MESOFIT, VERIFY_BY_ENGINE };
+
 struct verify_parameters {
+    int by; ///< enum verify_by
     int64_t replicas;
     double time_step;         ///< 0: that of the scene [τ]
     int shorten;              ///< of the choices "no" and "yes"
@@ -41,7 +45,8 @@ struct verification {
 /// Simulate the problem's scene with new seeds; replicas in parallel. With a step that may be
 /// shortened it is done again until that suits the potential (problem/verify_step.h), for as long a
 /// time each. What has not settled was equilibration: it goes on from where it ended, equilibrated
-/// for new velocities and with twice as many steps between samples, up to two times.
+/// for new velocities and with twice as many steps between samples, up to two times. Another engine
+/// of the problem simulates in its place, once.
 /// Fails: as mf_simulation_run. Tested: test_verify_again.
 enum status mf_verify(const struct inverse_problem *problem, const struct table *potential,
                       const struct table *omega, const struct verify_parameters *parameters,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#define _GNU_SOURCE // pipe2
 #include "report/program.h"
 
 #include "base/clock.h"
+#include "base/interrupt.h"
 #include "io/output.h"
 
 #include <errno.h>
@@ -13,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -43,15 +46,30 @@ static char **make_environment(void) {
     return environment;
 }
 
+/// What is run, and for how long.
+struct running {
+    const char *folder, *name; ///< the name is for messages
+    const char *const *words;
+    enum program_says says;
+    double end;                ///< by the clock; INFINITY: any time
+    bool stops;                ///< when this program is to stop,
+    const atomic_bool *cancel; ///< or this is set
+    const struct program_ear *ear;
+};
+
 /// In the child: nothing but calls that are safe after a fork of a program with threads.
-static void become(const char *folder, const char *const *words, char **environment,
-                   enum program_says says, const int ends[2]) {
+static void become(const struct running *running, char **environment, pid_t parent,
+                   const int ends[2]) {
+    const char *const *words = running->words;
+    const enum program_says says = running->says;
     environ = environment;
     setpgid(0, 0); // a group of its own, so that it can be stopped as a whole
+    if (running->stops && (prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || getppid() != parent))
+        _exit(EXIT_NOT_STARTED);
     const int nothing = open("/dev/null", O_RDWR);
     const int out = says == PROGRAM_EVERYTHING ? ends[1] : nothing;
     if (nothing >= 0 && dup2(nothing, STDIN_FILENO) >= 0 && dup2(out, STDOUT_FILENO) >= 0 &&
-        dup2(ends[1], STDERR_FILENO) >= 0 && close(ends[0]) == 0 && chdir(folder) == 0)
+        dup2(ends[1], STDERR_FILENO) >= 0 && close(ends[0]) == 0 && chdir(running->folder) == 0)
         execvp(words[0], (char *const *)words);
     _exit(errno == ENOENT ? EXIT_NOT_FOUND : EXIT_NOT_STARTED);
 }
@@ -62,18 +80,28 @@ static int time_left(double end) {
     return isinf(end) ? -1 : seconds > 0 ? (int)ceil(1e3 * seconds) : 0;
 }
 
+/// Milliseconds until one looks again.
+static int patience(const struct running *running) {
+    enum { LOOK = 50 };
+    const int left = time_left(running->end);
+    return running->stops && (left < 0 || left > LOOK) ? LOOK : left;
+}
+
+static bool is_over(const struct running *running) {
+    return time_left(running->end) == 0 || (running->stops && mf_interrupt_wanted(running->cancel));
+}
+
 /// Read to the end and keep the last size − 1 bytes as a text; false if it does not end in time.
-static bool read_tail(int file, double end, const struct program_ear *ear, char *text,
-                      size_t size) {
+static bool read_tail(int file, const struct running *running, char *text, size_t size) {
     char chunk[512];
     size_t used = 0;
     struct pollfd ready = {.fd = file, .events = POLLIN};
     for (;;) {
-        const int events = poll(&ready, 1, time_left(end));
-        if (events < 0 && errno == EINTR)
-            continue;
-        if (events == 0)
+        const int events = poll(&ready, 1, patience(running));
+        if (is_over(running))
             return false;
+        if (events == 0 || (events < 0 && errno == EINTR))
+            continue;
         const ssize_t count = read(file, chunk, sizeof chunk);
         if (count < 0 && errno == EINTR)
             continue;
@@ -85,8 +113,8 @@ static bool read_tail(int file, double end, const struct program_ear *ear, char 
         memcpy(text + kept, chunk, (size_t)count);
         used = kept + (size_t)count;
         text[used] = '\0';
-        if (ear)
-            ear->hear(ear->context, text);
+        if (running->ear)
+            running->ear->hear(running->ear->context, text);
     }
 }
 
@@ -101,13 +129,14 @@ static const char *last_line(char *text) {
 
 /// Wait until a program has ended, which one that has closed its streams may not have; false if it
 /// has not in time.
-static bool wait_for(pid_t child, double end, int *state) {
+static bool wait_for(pid_t child, const struct running *running, int *state) {
     const struct timespec pause = {.tv_nsec = 2000000};
+    const bool patient = running == NULL || (isinf(running->end) && !running->stops);
     for (;;) {
-        const pid_t ended = waitpid(child, state, isinf(end) ? 0 : WNOHANG);
+        const pid_t ended = waitpid(child, state, patient ? 0 : WNOHANG);
         if (ended == child || (ended < 0 && errno != EINTR))
             return true;
-        if (ended == 0 && time_left(end) == 0)
+        if (ended == 0 && is_over(running))
             return false;
         if (ended == 0)
             nanosleep(&pause, NULL);
@@ -126,43 +155,87 @@ static enum status assess(const char *name, int state, char *text) {
                           text[0] ? last_line(text) : "no reason");
 }
 
-enum status mf_program_hear(const char *folder, const char *const *words, enum program_says says,
-                            double seconds, const struct program_ear *ear, char *text,
-                            size_t size) {
+/// Stop it, with the programs that it has started: those of MPI are told first, as they have others
+/// to tell.
+static void stop(pid_t child, const struct running *running) {
+    struct running gentle = {.end = clock_seconds() + 2};
+    int state;
+    if (running->stops && kill(-child, SIGTERM) == 0 && wait_for(child, &gentle, &state)) {
+        kill(-child, SIGKILL); // what has not heard
+        return;
+    }
+    kill(-child, SIGKILL);
+    wait_for(child, NULL, &state);
+}
+
+static enum status run_it(const struct running *running, char *text, size_t size) {
     int ends[2];
+    const pid_t parent = getpid();
     text[0] = '\0';
     char **environment = make_environment();
     if (environment == NULL)
-        return mf_status_fail(STATUS_NO_MEMORY, "cannot run %s: out of memory", words[0]);
-    if (pipe(ends) != 0) {
+        return mf_status_fail(STATUS_NO_MEMORY, "cannot run %s: out of memory", running->name);
+    if (pipe2(ends, O_CLOEXEC) != 0) {
         free(environment);
-        return mf_status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(errno));
+        return mf_status_fail(STATUS_IO, "cannot run %s: %s", running->name, strerror(errno));
     }
-    const double end = seconds > 0 ? clock_seconds() + seconds : INFINITY;
+    const double begun = clock_seconds();
     const pid_t child = fork();
     if (child == 0)
-        become(folder, words, environment, says, ends);
+        become(running, environment, parent, ends);
     const int error = errno;
     free(environment);
     close(ends[1]);
     int state = -1;
     const bool ended =
-        child > 0 && read_tail(ends[0], end, ear, text, size) && wait_for(child, end, &state);
+        child > 0 && read_tail(ends[0], running, text, size) && wait_for(child, running, &state);
     close(ends[0]);
     if (child < 0)
-        return mf_status_fail(STATUS_IO, "cannot run %s: %s", words[0], strerror(error));
-    if (!ended) {
-        kill(-child, SIGKILL); // with the programs that it has started
-        wait_for(child, INFINITY, &state);
-        return mf_status_fail(STATUS_IO, "%s had not ended after %g s and was stopped", words[0],
-                              seconds);
-    }
-    return assess(words[0], state, text);
+        return mf_status_fail(STATUS_IO, "cannot run %s: %s", running->name, strerror(error));
+    if (ended)
+        return assess(running->name, state, text);
+    stop(child, running);
+    if (running->stops && mf_interrupt_wanted(running->cancel))
+        return mf_status_fail(STATUS_INTERRUPTED, "%s was stopped", running->name);
+    return mf_status_fail(STATUS_IO, "%s had not ended after %.3g s and was stopped", running->name,
+                          running->end - begun);
+}
+
+enum status mf_program_hear(const char *folder, const char *const *words, enum program_says says,
+                            double seconds, const struct program_ear *ear, char *text,
+                            size_t size) {
+    return run_it(&(struct running){.folder = folder,
+                                    .name = words[0],
+                                    .words = words,
+                                    .says = says,
+                                    .end = seconds > 0 ? clock_seconds() + seconds : INFINITY,
+                                    .ear = ear},
+                  text, size);
 }
 
 enum status mf_program_run(const char *folder, const char *const *words, enum program_says says,
                            double seconds, char *text, size_t size) {
     return mf_program_hear(folder, words, says, seconds, NULL, text, size);
+}
+
+enum status mf_program_command(const char *folder, const char *const *words,
+                               const atomic_bool *cancel, char *text, size_t size) {
+    enum { MOST = 32 };
+    char script[OUTPUT_PATH_SIZE];
+    const char *all[MOST + 4] = {"sh", "-c", script, "sh"};
+    const int length = snprintf(script, sizeof script, "exec %s \"$@\"", words[0]);
+    if (length < 0 || (size_t)length >= sizeof script)
+        return mf_status_fail(STATUS_BAD_INPUT, "the command is too long: %.60s...", words[0]);
+    for (size_t k = 1; words[k] && k < MOST; k++)
+        all[3 + k] = words[k];
+    return run_it(&(struct running){.folder = folder,
+                                    .name = words[0],
+                                    .words = all,
+                                    .says = PROGRAM_EVERYTHING,
+                                    .end = INFINITY,
+                                    .stops = true,
+                                    .cancel = cancel},
+                  text, size);
 }
 
 // Where this program's files are ------------------------------------------------------------------

@@ -4,6 +4,7 @@
 
 #include "base/status.h"
 
+#include <stdatomic.h>
 #include <stddef.h>
 
 /// What to keep of what a program says.
@@ -32,6 +33,13 @@ struct program_ear {
 enum status mf_program_hear(const char *folder, const char *const *words, enum program_says says,
                             double seconds, const struct program_ear *ear, char *text,
                             size_t size) MUST_USE;
+
+/// Run a command as its user would type it, words[0], with the words after it, in `folder`. It is
+/// stopped, with all that it has started, if the user asks this program to stop or `cancel` is set,
+/// and told to end if this program ends. What it says is kept, both streams.
+/// Fails: as mf_program_run; INTERRUPTED. Tested: test_program.
+enum status mf_program_command(const char *folder, const char *const *words,
+                               const atomic_bool *cancel, char *text, size_t size) MUST_USE;
 
 /// Find a folder that ships with this program, such as "plots", by a file that it must have.
 ///

@@ -7,7 +7,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/status.h"
+
 struct caller_observables;
+struct fit_file;
+struct sampling_engine;
 struct json_word;
 struct watcher;
 
@@ -16,6 +20,16 @@ enum run_words {
     RUN_SAYS_ALL,
     RUN_WARNS,       ///< --quiet
     RUN_SAYS_NOTHING ///< a watcher is told, or another rank says it
+};
+
+/// Who starts another engine for a fit: a run file names no command, since what a stranger has
+/// written must run nothing.
+struct engine_door {
+    const char *command; ///< NULL: none was named
+    /// Fails: BAD_INPUT for a scene that it cannot sample; NO_MEMORY.
+    enum status (*open)(const char *command, const struct fit_file *fit, const char *folder,
+                        const struct sampling_engine **engine);
+    void (*close)(const struct sampling_engine *engine); ///< of NULL: nothing
 };
 
 /// Options that all runs share, from the command line.
@@ -31,7 +45,8 @@ struct run_options {
     bool no_figures;               ///< none are drawn in the folder
     const struct json_word *words; ///< about the run file (io/json.h), shape [word_count]; borrowed
     size_t word_count;
-    const atomic_bool *stop; ///< ends the run as Ctrl-C does, or NULL; borrowed
+    const struct engine_door *engine; ///< for inversions, or NULL; borrowed
+    const atomic_bool *stop;          ///< ends the run as Ctrl-C does, or NULL; borrowed
     /// What a simulation measures besides (observe/caller_observable.h), or NULL; borrowed.
     const struct caller_observables *callers;
     const struct watcher *watcher; ///< who watches the run (report/watcher.h), or NULL; borrowed

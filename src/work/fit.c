@@ -29,6 +29,7 @@ struct run {
     struct progress progress;
     struct fit_file fit;
     struct unknowns unknowns;
+    const struct sampling_engine *engine; ///< that samples, or NULL: we
     void *state;
     bool created;
     struct history history;
@@ -110,7 +111,27 @@ static void list_state(struct run *run) {
                           mf_unknowns_points(&run->unknowns, UNKNOWN_POTENTIAL) * sizeof(double));
 }
 
-static enum status create(struct run *run) {
+/// Another engine samples if the run file says so, and the command line names it.
+static enum status open_engine(struct run *run, const struct run_options *options) {
+    const struct engine_door *door = options->engine;
+    struct fit_file *fit = &run->fit;
+    const bool named = door && door->command;
+    if (fit->engine.kind == ENGINE_NONE)
+        return named ? mf_status_fail(STATUS_BAD_INPUT,
+                                      "--engine: the run file has no \"engine\" that says what the "
+                                      "command is: {\"name\": \"lammps\"} or \"command\"")
+                     : STATUS_OK;
+    if (!named)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "engine: its command stands on the command line, as a run file "
+                              "starts nothing: mesofit fit ... --engine \"%s\"",
+                              fit->engine.kind == ENGINE_LAMMPS ? "lmp" : "COMMAND");
+    TRY(door->open(door->command, fit, run->folder.path, &run->engine));
+    fit->problem.engine = run->engine;
+    return STATUS_OK;
+}
+
+static enum status create(struct run *run, const struct run_options *options) {
     const struct fit_file *fit = &run->fit;
     size_t points[UNKNOWNS];
     TRY(mf_unknowns_init(&run->unknowns, &fit->problem));
@@ -125,6 +146,7 @@ static enum status create(struct run *run) {
     if (points[UNKNOWN_POTENTIAL] > 0)
         TRY_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
     mf_history_init(&run->history, fit->method, points, &fit->problem);
+    TRY(open_engine(run, options));
     TRY((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
     run->created = true;
     TRY(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
@@ -139,7 +161,7 @@ static enum status read_and_create(struct run *run, const char *file,
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
     TRY(mf_fit_verify_folders(&run->fit, &run->folder));
     TRY(mf_fit_states_normalise(&run->fit));
-    const enum status status = create(run);
+    const enum status status = create(run, options);
     if (status != STATUS_OK)
         return mf_status_prefix(mf_units_convert_message(&run->fit.scene.units, status), "%s",
                                 file);
@@ -432,6 +454,8 @@ done:
             run->fit.method->destroy(run->state);
         mf_memory_free(run->state);
         mf_history_clear(&run->history);
+        if (options->engine)
+            options->engine->close(run->engine);
         mf_unknowns_clear(&run->unknowns);
         for (int kind = 0; kind < UNKNOWNS; kind++) {
             mf_memory_free(run->curve[kind]);

@@ -87,6 +87,13 @@ static struct verify_parameters plan_of(const struct fit_file *state, int round)
     return parameters;
 }
 
+/// Another engine verifies what it may know more of than the scene does.
+static bool verifies_elsewhere(const struct fit_file *state) {
+    const bool knows = state->engine.kind == ENGINE_COMMAND || state->engine.input[0];
+    return state->verification.by == VERIFY_BY_ENGINE ||
+           (state->verification.by == VERIFY_BY_AUTO && knows);
+}
+
 static enum status verify_state(const struct fit_file *state, int round, double *const *curve,
                                 const struct inverse_parameter *number,
                                 const struct inverse_listener *listener,
@@ -100,6 +107,7 @@ static enum status verify_state(const struct fit_file *state, int round, double 
         value[n] = number[n].value;
     CHECK(mf_unknowns_init(&unknowns, &state->problem));
     CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)curve, value, &laws));
+    laws.problem.engine = verifies_elsewhere(state) ? state->problem.engine : NULL;
     status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                        &parameters, listener, verification);
     CHECK(advise(state, &verification->step, status));

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file Another engine at work for an inversion: the folder of a piece, the command that fills it,
+/// and the frames that are read from it.
+///
+/// Each replica has a folder for each of its pieces, engine/NNNN/RR in the folder of the fit. What
+/// an engine needs is written there by its record (struct engine_kind_record), the user's command
+/// runs there, and its frames are read from there.
+#pragma once
+
+#include "base/status.h"
+#include "defaults/fit_file.h"
+#include "io/output.h"
+#include "problem/sampling_engine.h"
+#include "report/progress.h"
+#include "scene/run_options.h"
+#include "trajectory/trajectory.h"
+
+#include <pthread.h>
+
+struct engine_run;
+
+/// Numbers beside the frames of a piece, as far as they are known.
+struct engine_numbers {
+    size_t rows;
+    int64_t *step;       ///< shape [rows]; NULL: a row is a frame
+    double *temperature; ///< shape [rows] [T_0]; NULL: not known
+    double *pressure;    ///< the same [k_B T_0/λ^d]
+    double *energy;      ///< the same [k_B T_0]
+};
+void mf_engine_numbers_clear(struct engine_numbers *numbers);
+
+/// How an engine is spoken to.
+struct engine_tongue {
+    const char *units; ///< of its trajectories where they do not say it; NULL: as the scene's
+    bool whole_energy; ///< its energies are those of pairs and molecules
+    /// Before the first piece of this process. NULL: nothing.
+    enum status (*prepare)(struct engine_run *run, const struct engine_piece *piece);
+    /// Write the files of a piece.
+    enum status (*write)(const struct engine_run *run, const struct engine_piece *piece,
+                         const char *folder);
+    /// Words after the command, NULL-terminated, into `words` of ENGINE_MAX_WORDS; texts into
+    /// `text`.
+    void (*words)(const struct engine_run *run, const struct engine_piece *piece,
+                  const char **words, char *text, size_t size);
+    /// The line of what the engine said that tells why it failed, or NULL.
+    const char *(*reason)(char *text);
+    bool (*blames_potential)(const char *reason); ///< whether that is its fault; NULL: never
+    /// Name of the trajectory in the folder, and how many of its first frames are no samples.
+    const char *(*frames)(const struct engine_run *run);
+    size_t skip;
+    enum status (*numbers)(const struct engine_run *run, const char *folder,
+                           struct engine_numbers *numbers);
+    void (*forget)(struct engine_run *run); ///< what `prepare` has made; NULL: nothing
+};
+enum { ENGINE_MAX_WORDS = 16 };
+extern const struct engine_tongue mf_engine_lammps, mf_engine_command;
+
+/// An engine of a run.
+struct engine_run {
+    struct sampling_engine engine; ///< its context is this
+    const struct engine_tongue *tongue;
+    const struct engine_settings *settings;
+    const struct fit_file *fit;
+    const char *command;
+    const char *folder; ///< of the fit; borrowed
+    pthread_mutex_t first;
+    bool prepared;
+    void *own; ///< of the tongue
+};
+
+/// Path of the folder of a piece, into `path` of OUTPUT_PATH_SIZE bytes.
+void mf_engine_folder(const struct engine_run *run, size_t replica, uint64_t number, char *path);
+
+/// A file of a folder, "folder/name", into `path` of OUTPUT_PATH_SIZE bytes.
+void mf_engine_path(const char *folder, const char *name, char *path);
+
+/// Time steps of so many sweeps.
+static inline uint64_t engine_steps(const struct engine_run *run, uint64_t sweeps) {
+    return sweeps * (uint64_t)run->settings->steps;
+}
+
+/// Frames of a piece while they are read.
+struct engine_frames;
+enum status mf_engine_frames_open(const struct engine_run *run, const struct engine_piece *piece,
+                                  const char *folder, struct engine_frames **frames) MUST_USE;
+enum status mf_engine_frames_next(void *frames, double *const position[3],
+                                  struct engine_sample *sample) MUST_USE;
+void mf_engine_frames_close(void *frames);

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "engines/engine.h"
+#include "engines/engine_folder.h"
+
+#include <math.h>
+#include <string.h>
+
+struct engine_frames {
+    char file[OUTPUT_PATH_SIZE];
+    struct trajectory trajectory;
+    struct trajectory_frame frame;
+    bool open;
+    const struct box *box;
+    double nm; ///< of λ, as the trajectory is read
+    size_t beads;
+    size_t *atom; ///< of each bead, shape [beads]
+    uint64_t taken, wanted;
+    size_t skip;
+    struct engine_numbers numbers;
+};
+
+void mf_engine_frames_close(void *memory) {
+    struct engine_frames *frames = memory;
+    if (frames == NULL)
+        return;
+    if (frames->open)
+        mf_trajectory_close(&frames->trajectory);
+    mf_frame_clear(&frames->frame);
+    mf_memory_free(frames->atom);
+    mf_engine_numbers_clear(&frames->numbers);
+    mf_memory_free(frames);
+}
+
+// Atoms -------------------------------------------------------------------------------------------
+
+/// Whether an atom is of a type: as the run file calls it for the engine, or by its own name, or,
+/// in files of numbers, by its place.
+static bool is_of_type(const struct engine_run *run, const struct structure *structure, size_t k,
+                       int type) {
+    const struct structure_atom *atom = &structure->atom[k];
+    const struct composition *composition = &run->fit->scene.setup.composition;
+    const char *called = run->settings->type[type];
+    char number[STRUCTURE_NAME];
+    snprintf(number, sizeof number, "%lld", (long long)atom->type);
+    if (called[0])
+        return strcmp(called, atom->name) == 0 || strcmp(called, atom->type_name) == 0 ||
+               (structure->has_types && strcmp(called, number) == 0);
+    if (composition->types == 0 || (composition->types == 1 && !composition->name[0][0]))
+        return true;
+    if (structure->has_names && structure->names != STRUCTURE_TYPES)
+        return strcmp(composition->name[type], atom->name) == 0;
+    return structure->has_types && atom->type == type + 1;
+}
+
+static const char *name_of(const struct composition *composition, int type) {
+    return composition->types > 0 && composition->name[type][0] ? composition->name[type]
+                                                                : "the beads";
+}
+
+/// Beads in the order of their types, those of a type as the atoms stand.
+static enum status find_atoms(const struct engine_run *run, struct engine_frames *frames) {
+    const struct structure *structure = &frames->trajectory.structure;
+    const struct composition *composition = &run->fit->scene.setup.composition;
+    size_t bead = 0;
+    for (int type = 0; type < (composition->types > 0 ? composition->types : 1); type++) {
+        const size_t first = bead;
+        const size_t wanted =
+            composition->types > 0 ? (size_t)composition->count[type] : frames->beads;
+        for (size_t k = 0; k < structure->atoms; k++) {
+            if (!is_of_type(run, structure, k, type))
+                continue;
+            if (bead < first + wanted)
+                frames->atom[bead] = k;
+            bead++;
+        }
+        if (bead != first + wanted)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: %zu atoms of the engine are %s, of which the scene has %zu; "
+                                  "\"types\" of \"engine\" says which are",
+                                  frames->file, bead - first, name_of(composition, type), wanted);
+    }
+    return STATUS_OK;
+}
+
+// Frames ------------------------------------------------------------------------------------------
+
+static enum status open_trajectory(const struct engine_run *run, struct engine_frames *frames) {
+    const struct units *units = &run->fit->scene.units;
+    const bool physical = mf_units_known(units);
+    const char *other = physical ? run->tongue->units : "lj";
+    frames->nm = physical ? units->length : 1;
+    enum status status = mf_trajectory_open(&frames->trajectory, frames->file,
+                                            &(struct trajectory_options){.units = other});
+    if (status == STATUS_BAD_INPUT && run->tongue->units == NULL) // a format that has its own
+        status = mf_trajectory_open(&frames->trajectory, frames->file,
+                                    &(struct trajectory_options){.units = NULL});
+    frames->open = status == STATUS_OK;
+    return status;
+}
+
+/// Fewer frames than were asked for are a fault; what comes after them is left.
+static enum status fail_short(const struct engine_frames *frames) {
+    return mf_status_fail(
+        STATUS_BAD_INPUT, "%s: it ends after %llu of the %llu frames that were asked for",
+        frames->file, (unsigned long long)frames->taken, (unsigned long long)frames->wanted);
+}
+
+static enum status fill(const struct engine_run *run, const struct engine_piece *piece,
+                        const char *folder, struct engine_frames *frames) {
+    const struct simulation_setup *setup = &run->fit->scene.setup;
+    frames->box = &setup->box;
+    frames->beads = (size_t)setup->placement.count;
+    frames->wanted = piece->frames;
+    frames->skip = run->tongue->skip;
+    mf_engine_path(folder, run->tongue->frames(run), frames->file);
+    TRY_ARRAY(frames->atom, frames->beads);
+    TRY(open_trajectory(run, frames));
+    TRY(find_atoms(run, frames));
+    return run->tongue->numbers(run, folder, &frames->numbers);
+}
+
+enum status mf_engine_frames_open(const struct engine_run *run, const struct engine_piece *piece,
+                                  const char *folder, struct engine_frames **frames) {
+    TRY_ARRAY(*frames, 1);
+    const enum status status = fill(run, piece, folder, *frames);
+    if (status == STATUS_OK)
+        return STATUS_OK;
+    mf_engine_frames_close(*frames);
+    *frames = NULL;
+    return status;
+}
+
+/// The box must be that of the scene, as g* is normalised by it.
+static enum status check_box(const struct engine_frames *frames) {
+    static const double rounding = 1e-4;
+    const struct trajectory_frame *frame = &frames->frame;
+    for (int a = 0; frame->has_box && a < frames->box->dimensions; a++)
+        for (int b = 0; b < frames->box->dimensions; b++) {
+            const double wanted = a == b ? frames->box->length[a] * frames->nm : 0;
+            if (fabs(frame->box[a][b] - wanted) > rounding * frames->box->length[a] * frames->nm)
+                return mf_status_fail(
+                    STATUS_BAD_INPUT,
+                    "%s: frame %zu: the box is %.6g by %.6g by %.6g where the scene's is %.6g by "
+                    "%.6g by %.6g; it must be rectangular and constant",
+                    frames->file, frame->number, frame->box[0][0], frame->box[1][1],
+                    frame->box[2][2], frames->box->length[0] * frames->nm,
+                    frames->box->length[1] * frames->nm, frames->box->length[2] * frames->nm);
+        }
+    return STATUS_OK;
+}
+
+/// What is known beside the frame.
+static struct engine_sample find_sample(const struct engine_frames *frames) {
+    const struct engine_numbers *numbers = &frames->numbers;
+    size_t row = (size_t)frames->taken + frames->skip;
+    if (numbers->step)
+        for (row = 0; row < numbers->rows && numbers->step[row] != frames->frame.step; row++)
+            ;
+    const bool known = row < numbers->rows;
+    return (struct engine_sample){known && numbers->temperature ? numbers->temperature[row] : NAN,
+                                  known && numbers->pressure ? numbers->pressure[row] : NAN,
+                                  known && numbers->energy ? numbers->energy[row] : NAN};
+}
+
+enum status mf_engine_frames_next(void *memory, double *const position[3],
+                                  struct engine_sample *sample) {
+    struct engine_frames *frames = memory;
+    struct trajectory_frame *frame = &frames->frame;
+    const size_t reads = frames->taken == 0 ? frames->skip + 1 : 1;
+    for (size_t k = 0; k < reads; k++) {
+        bool more;
+        TRY(mf_trajectory_next(&frames->trajectory, frame, &more));
+        if (!more)
+            return fail_short(frames);
+    }
+    TRY(check_box(frames));
+    *sample = find_sample(frames);
+    frames->taken++;
+    for (int d = 0; d < frames->box->dimensions; d++) {
+        const double length = frames->box->length[d];
+        for (size_t bead = 0; bead < frames->beads; bead++) {
+            const double x = frame->position[frames->atom[bead]][d] / frames->nm;
+            if (!isfinite(x))
+                return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: a position is no number",
+                                      frames->file, frame->number);
+            position[d][bead] = x - length * floor(x / length);
+        }
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "problem/sampling_engine.h"
+
+const char *const mf_engine_kinds[] = {"none", "lammps", "command", NULL};
+
+#define MEMBER(name) .offset = offsetof(struct engine_settings, name)
+const struct field mf_engine_fields[] = {
+    {"name", FIELD_CHOICE, MEMBER(kind), .choices = mf_engine_kinds, .initial = ENGINE_NONE,
+     .unit = "", .help = "who samples in the place of mesofit; the command stands after --engine"},
+    {"input", FIELD_FILE, MEMBER(input), .unit = "",
+     .help = "LAMMPS input with `include mesofit.lmp` and `include mesofit-run.lmp`; without it "
+             "one is written for the scene"},
+    {"frames", FIELD_TEXT, MEMBER(frames), .unit = "",
+     .help = "trajectory that the command leaves in the folder of a piece"},
+    {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
+     .unit = "tau", .help = "time step of an input that is written; 0: the scene's"},
+    {"steps", FIELD_INTEGER, MEMBER(steps), .initial = 10, .minimum = 1, .maximum = 1e9,
+     .unit = "steps", .help = "time steps that count as a sweep of \"method\""},
+    {"at_once", FIELD_INTEGER, MEMBER(at_once), .initial = 0, .minimum = 0, .maximum = 1024,
+     .unit = "", .help = "replicas that run side by side; 0: as many as --threads"},
+    {"keep", FIELD_INTEGER, MEMBER(keep), .initial = 2, .minimum = 1, .maximum = 1e9, .unit = "",
+     .help = "pieces of each replica whose files stay in the folder engine"},
+    FIELD_END,
+};
