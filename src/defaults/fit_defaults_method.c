@@ -225,7 +225,8 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     TRY(mf_fit_defaults_take_method(c, method));
     if (both || !simulates) {
         // States of other densities have other particles in a box of that width.
-        const bool joined = scene_has_molecules(&c->fit->scene.molecules) || c->fit->name[0];
+        const bool joined = scene_has_molecules(&c->fit->scene.molecules) || c->fit->name[0] ||
+                            c->fit->engine.kind != ENGINE_NONE;
         mf_fit_choice_note(
             c,
             "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "

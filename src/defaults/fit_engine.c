@@ -35,7 +35,7 @@ static void read_types(struct fit_file *fit, struct json_object *object) {
 void mf_fit_engine_read(struct fit_file *fit, struct json_object *root) {
     struct engine_settings *engine = &fit->engine;
     struct json_object object = mf_json_child_of(root, "engine", false, "name");
-    mf_json_fields(&object, mf_engine_fields, engine);
+    mf_json_fields(&object, mf_sampling_engine_fields, engine);
     if (object.item == NULL)
         return;
     read_types(fit, &object);
@@ -55,7 +55,7 @@ void mf_fit_engine_write(const struct fit_file *fit, struct json_writer *writer)
     if (fit->engine.kind == ENGINE_NONE)
         return;
     mf_json_begin(writer, "engine");
-    mf_json_write_fields(writer, mf_engine_fields, &fit->engine);
+    mf_json_write_fields(writer, mf_sampling_engine_fields, &fit->engine);
     mf_json_begin(writer, "types");
     for (int type = 0; type < composition->types; type++)
         if (fit->engine.type[type][0])

@@ -81,7 +81,7 @@ struct fit_file {
     struct inverse_number number[INVERSE_MAX_NUMBERS];             ///< that are to be found
     size_t numbers;
     struct fit_core core;
-    uint64_t core_given; ///< which fields the file says
+    uint64_t core_given;           ///< which fields the file says
     struct engine_settings engine; ///< who samples
     const struct inverse_method *method;
     void *method_parameters;

@@ -20,31 +20,47 @@ void mf_engine_path(const char *folder, const char *name, char *path) {
     snprintf(path, OUTPUT_PATH_SIZE, "%.3800s/%.250s", folder, name);
 }
 
-static bool is_dots(const char *name) {
-    return strcmp(name, ".") == 0 || strcmp(name, "..") == 0;
+static int is_own(const struct dirent *entry) {
+    return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+}
+
+/// What lies in a folder; −1: it is not there.
+struct listing {
+    struct dirent **entry;
+    int count;
+};
+
+static struct listing list(const char *folder) {
+    struct listing listing = {NULL, 0};
+    listing.count = scandir(folder, &listing.entry, is_own, alphasort);
+    return listing;
+}
+
+static void forget(struct listing *listing) {
+    for (int k = 0; k < listing->count; k++)
+        free(listing->entry[k]);
+    free(listing->entry);
+}
+
+static enum status remove_one(const char *path) {
+    struct stat found;
+    if (lstat(path, &found) == 0 && S_ISDIR(found.st_mode))
+        return mf_engine_folder_remove(path);
+    return unlink(path) == 0 ? STATUS_OK : fail(path, "remove");
 }
 
 enum status mf_engine_folder_remove(const char *folder) {
     enum status status = STATUS_OK;
-    DIR *listing = opendir(folder);
-    if (listing == NULL)
+    struct listing inside = list(folder);
+    if (inside.count < 0)
         return errno == ENOENT ? STATUS_OK : fail(folder, "read");
-    for (struct dirent *entry = readdir(listing); entry && status == STATUS_OK;
-         entry = readdir(listing)) {
+    for (int k = 0; k < inside.count && status == STATUS_OK; k++) {
         char path[OUTPUT_PATH_SIZE];
-        struct stat found;
-        if (is_dots(entry->d_name))
-            continue;
-        mf_engine_path(folder, entry->d_name, path);
-        if (lstat(path, &found) == 0 && S_ISDIR(found.st_mode))
-            status = mf_engine_folder_remove(path);
-        else if (unlink(path) != 0)
-            status = fail(path, "remove");
+        mf_engine_path(folder, inside.entry[k]->d_name, path);
+        status = remove_one(path);
     }
-    closedir(listing);
-    if (status == STATUS_OK && rmdir(folder) != 0)
-        status = fail(folder, "remove");
-    return status;
+    forget(&inside);
+    return status != STATUS_OK || rmdir(folder) == 0 ? status : fail(folder, "remove");
 }
 
 enum status mf_engine_folder_make(const char *fit, const char *folder) {
@@ -65,22 +81,23 @@ enum status mf_engine_folder_link(const char *folder, const char *file, const ch
     char beside[OUTPUT_PATH_SIZE];
     snprintf(beside, sizeof beside, "%s", file);
     char *slash = strrchr(beside, '/');
-    *(slash ? slash : beside + 1) = '\0';
-    OWNED char *from = realpath(slash ? beside : ".", NULL), *own = realpath(fit, NULL);
-    DIR *listing = from ? opendir(from) : NULL;
-    if (listing == NULL)
+    *(slash ? slash : beside) = '\0';
+    OWNED char *from = realpath(slash ? beside : ".", NULL);
+    OWNED char *own = realpath(fit, NULL);
+    struct listing inside = {NULL, -1};
+    if (from)
+        inside = list(from);
+    if (inside.count < 0)
         return fail(beside, "read");
-    for (struct dirent *entry = readdir(listing); entry && status == STATUS_OK;
-         entry = readdir(listing)) {
+    for (int k = 0; k < inside.count && status == STATUS_OK; k++) {
         char target[OUTPUT_PATH_SIZE], link[OUTPUT_PATH_SIZE];
-        mf_engine_path(from, entry->d_name, target);
-        mf_engine_path(folder, entry->d_name, link);
-        if (is_dots(entry->d_name) || (own && strcmp(own, target) == 0))
-            continue;
-        if (symlink(target, link) != 0 && errno != EEXIST)
+        mf_engine_path(from, inside.entry[k]->d_name, target);
+        mf_engine_path(folder, inside.entry[k]->d_name, link);
+        if ((own == NULL || strcmp(own, target) != 0) && symlink(target, link) != 0 &&
+            errno != EEXIST)
             status = fail(link, "make the link");
     }
-    closedir(listing);
+    forget(&inside);
     return status;
 }
 

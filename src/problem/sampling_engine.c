@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem/sampling_engine.h"
 
-const char *const mf_engine_kinds[] = {"none", "lammps", "command", NULL};
+const char *const mf_sampling_engine_kinds[] = {"none", "lammps", "command", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct engine_settings, name)
-const struct field mf_engine_fields[] = {
-    {"name", FIELD_CHOICE, MEMBER(kind), .choices = mf_engine_kinds, .initial = ENGINE_NONE,
-     .unit = "", .help = "who samples in the place of mesofit; the command stands after --engine"},
+const struct field mf_sampling_engine_fields[] = {
+    {"name", FIELD_CHOICE, MEMBER(kind), .choices = mf_sampling_engine_kinds,
+     .initial = ENGINE_NONE, .unit = "",
+     .help = "who samples in the place of mesofit; the command stands after --engine"},
     {"input", FIELD_FILE, MEMBER(input), .unit = "",
      .help = "LAMMPS input with `include mesofit.lmp` and `include mesofit-run.lmp`; without it "
              "one is written for the scene"},

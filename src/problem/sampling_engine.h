@@ -36,8 +36,8 @@ struct engine_settings {
     char type[COMPOSITION_MAX_TYPES][COMPOSITION_NAME_SIZE]; ///< what it calls each type; "": as we
 };
 
-extern const struct field mf_engine_fields[]; ///< of struct engine_settings
-extern const char *const mf_engine_kinds[];   ///< in the order of enum engine_kind
+extern const struct field mf_sampling_engine_fields[]; ///< of struct engine_settings
+extern const char *const mf_sampling_engine_kinds[];   ///< in the order of enum engine_kind
 
 /// What a replica asks for: frames of the canonical ensemble. Borrowed.
 struct engine_piece {

@@ -257,6 +257,18 @@ static void find_worst(const struct inverse_problem *problem, struct verificatio
         add_part(problem, TARGET_RDF, first, bins, verification);
 }
 
+/// Whether the temperature that another engine has told is that of the scene.
+static void doubt_engine(const struct simulation_setup *setup, struct verification *verification) {
+    static const double allowed = 0.025, errors = 3;
+    const struct thermodynamics_summary *found = &verification->thermodynamics;
+    const double off = found->temperature / setup->temperature - 1;
+    if (fabs(off) > allowed + errors * found->temperature_error / setup->temperature)
+        snprintf(verification->warning, sizeof verification->warning,
+                 "the engine's samples are %.2g %% too %s: its time step is too long for this "
+                 "potential, or its thermostat does not hold",
+                 100 * fabs(off), off > 0 ? "hot" : "cold");
+}
+
 /// Results of all replicas together, in their order.
 static enum status summarise(struct measurement *replicas, size_t count,
                              struct verification *verification) {
@@ -269,8 +281,10 @@ static enum status summarise(struct measurement *replicas, size_t count,
     verification->thermodynamics = mf_thermodynamics_result(thermodynamics, count);
     verification->shift = mf_thermodynamics_shift(
         thermodynamics, count, &verification->thermodynamics, &replicas->simulation.setup);
-    if (mf_thermodynamics_assess_fit(&verification->thermodynamics, &replicas->simulation.setup) !=
-        STATUS_OK)
+    if (replicas->simulation.setup.integrator->tell)
+        doubt_engine(&replicas->simulation.setup, verification);
+    else if (mf_thermodynamics_assess_fit(&verification->thermodynamics,
+                                          &replicas->simulation.setup) != STATUS_OK)
         snprintf(verification->warning, sizeof verification->warning, "%s", mf_status_marked());
     const struct simulation_setup *setup = &replicas->simulation.setup;
     if (!verification->warning[0] && mf_pair_memory_is_coarse(&setup->memory, setup->time_step))
@@ -359,6 +373,7 @@ static enum status verify_once(struct work *work, struct verification *verificat
     struct measurement *replicas = NULL;
     *verification = (struct verification){0};
     *off = (struct thermodynamics_off){.known = false};
+    verification->by_engine = work->problem->engine != NULL;
     NEW_ARRAY(replicas, count);
     work->replicas = replicas;
     if (work->problem->engine)

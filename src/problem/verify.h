@@ -34,6 +34,7 @@ struct verification {
     char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
     struct verify_step step;
     char unequilibrated[VERIFY_EQUILIBRIUM_SIZE]; ///< what is not in equilibrium; "" if all is
+    bool by_engine;                               ///< another engine has simulated
     uint64_t engine_steps;                        ///< of those that had not settled, too
     size_t particles;
     size_t sampled; ///< particles of the samples that the fit ended with; 0: it has none of its own

@@ -189,8 +189,9 @@ static void print_distances(struct progress *to, const struct fit_file *fit,
         if (v->distance[kind].count < known)
             snprintf(of, sizeof of, ", of %zu of its %zu values: no others were measured",
                      v->distance[kind].count, known);
-        mf_progress_print(to, "verified: rms of %s - target = %s%s, statistics alone %.2g%s%s",
-                          mf_targets_name(kind), rms, name, factor * v->distance[kind].noise, of,
+        mf_progress_print(to, "verified%s: rms of %s - target = %s%s, statistics alone %.2g%s%s",
+                          v->by_engine ? " by the engine" : "", mf_targets_name(kind), rms, name,
+                          factor * v->distance[kind].noise, of,
                           !(noises > missed) ? ""
                           : fitted           ? ": not met: nothing better was found"
                                              : ": not fitted, only compared");
@@ -251,17 +252,19 @@ static void print_thermodynamics(struct progress *to, const struct units *units,
     mf_number_text(scale * t->pressure, scale * t->pressure_error, found);
     mf_units_suffix(units, "T_0", kelvin);
     report_shift(v, scale, shift, sizeof shift);
-    snprintf(pressure, sizeof pressure, "pressure %s%s%s", found,
+    snprintf(pressure, sizeof pressure, ", pressure %s%s%s", found,
              mf_units_suffix(units, "k_B T_0/lambda^d", unit), shift);
+    if (isnan(t->pressure)) // of another engine that has not told it
+        pressure[0] = '\0';
     if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
         return;
     if (isnan(t->temperature)) // no velocities
-        mf_progress_print(to, "configurational T = %s%s, %s", configurational, kelvin, pressure);
+        mf_progress_print(to, "configurational T = %s%s%s", configurational, kelvin, pressure);
     else if (isnan(t->temperature_configurational)) // no potential of pairs
-        mf_progress_print(to, "T = %s%s, %s", kinetic, kelvin, pressure);
+        mf_progress_print(to, "T = %s%s%s", kinetic, kelvin, pressure);
     else
-        mf_progress_print(to, "T = %s%s, configurational %s%s, %s", kinetic, kelvin,
-                          configurational, kelvin, pressure);
+        mf_progress_print(to, "T = %s%s, configurational %s%s%s", kinetic, kelvin, configurational,
+                          kelvin, pressure);
 }
 
 /// With which time step a state was verified, and that a fit by simulations had another one.

@@ -372,6 +372,8 @@ static void write_verification(struct json_writer *writer, const struct fit_file
                          known_error(t->pressure_error));
     write_quantity(writer, "pressure_of_time_step", "k_B T_0/lambda^d", v->shift.pressure);
     write_quantity(writer, "pressure_of_time_step_error", "k_B T_0/lambda^d", v->shift.error);
+    if (v->by_engine)
+        mf_json_write_text(writer, "verified_by", mf_sampling_engine_kinds[fit->engine.kind]);
     mf_json_write_number(writer, "verification_steps", (double)v->engine_steps);
     write_step(writer, &fit->scene.units, v);
     mf_units_write_results(&fit->scene.units, writer, t->potential_energy, t->pressure);

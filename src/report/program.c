@@ -226,7 +226,7 @@ enum status mf_program_command(const char *folder, const char *const *words,
     const int length = snprintf(script, sizeof script, "exec %s \"$@\"", words[0]);
     if (length < 0 || (size_t)length >= sizeof script)
         return mf_status_fail(STATUS_BAD_INPUT, "the command is too long: %.60s...", words[0]);
-    for (size_t k = 1; words[k] && k < MOST; k++)
+    for (size_t k = 1; k < MOST && words[k]; k++)
         all[3 + k] = words[k];
     return run_it(&(struct running){.folder = folder,
                                     .name = words[0],

@@ -14,6 +14,7 @@
 #include "report/history.h"
 #include "report/progress.h"
 #include "work/fit_checkpoint.h"
+#include "work/fit_engine.h"
 #include "work/fit_tasks.h"
 #include "work/fit_print.h"
 #include "work/fit_verify.h"
@@ -21,15 +22,11 @@
 #include <math.h>
 #include <string.h>
 
-/// Seconds between checkpoints inside an iteration, at least.
-static const double checkpoint_interval = 30;
-
 struct run {
     struct run_folder folder;
     struct progress progress;
     struct fit_file fit;
     struct unknowns unknowns;
-    const struct sampling_engine *engine; ///< that samples, or NULL: we
     void *state;
     bool created;
     struct history history;
@@ -111,27 +108,7 @@ static void list_state(struct run *run) {
                           mf_unknowns_points(&run->unknowns, UNKNOWN_POTENTIAL) * sizeof(double));
 }
 
-/// Another engine samples if the run file says so, and the command line names it.
-static enum status open_engine(struct run *run, const struct run_options *options) {
-    const struct engine_door *door = options->engine;
-    struct fit_file *fit = &run->fit;
-    const bool named = door && door->command;
-    if (fit->engine.kind == ENGINE_NONE)
-        return named ? mf_status_fail(STATUS_BAD_INPUT,
-                                      "--engine: the run file has no \"engine\" that says what the "
-                                      "command is: {\"name\": \"lammps\"} or \"command\"")
-                     : STATUS_OK;
-    if (!named)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "engine: its command stands on the command line, as a run file "
-                              "starts nothing: mesofit fit ... --engine \"%s\"",
-                              fit->engine.kind == ENGINE_LAMMPS ? "lmp" : "COMMAND");
-    TRY(door->open(door->command, fit, run->folder.path, &run->engine));
-    fit->problem.engine = run->engine;
-    return STATUS_OK;
-}
-
-static enum status create(struct run *run, const struct run_options *options) {
+static enum status create(struct run *run) {
     const struct fit_file *fit = &run->fit;
     size_t points[UNKNOWNS];
     TRY(mf_unknowns_init(&run->unknowns, &fit->problem));
@@ -146,7 +123,6 @@ static enum status create(struct run *run, const struct run_options *options) {
     if (points[UNKNOWN_POTENTIAL] > 0)
         TRY_ARRAY(run->without_ramp, points[UNKNOWN_POTENTIAL]);
     mf_history_init(&run->history, fit->method, points, &fit->problem);
-    TRY(open_engine(run, options));
     TRY((run->state = mf_memory_zeroed(1, fit->method->state_size)) ? STATUS_OK : STATUS_NO_MEMORY);
     run->created = true;
     TRY(fit->method->create(run->state, fit->method, &fit->problem, fit->method_parameters));
@@ -161,7 +137,8 @@ static enum status read_and_create(struct run *run, const char *file,
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
     TRY(mf_fit_verify_folders(&run->fit, &run->folder));
     TRY(mf_fit_states_normalise(&run->fit));
-    const enum status status = create(run, options);
+    TRY(mf_fit_engine_open(&run->fit, options->engine, run->folder.path));
+    const enum status status = create(run);
     if (status != STATUS_OK)
         return mf_status_prefix(mf_units_convert_message(&run->fit.scene.units, status), "%s",
                                 file);
@@ -297,10 +274,9 @@ static enum status record(struct run *run, const struct inverse_step *step) {
                          &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
     TRY(mf_fit_output_curves(&run->fit, &run->unknowns, &result, &run->folder));
-    if (run->fit.method->write) {
-        const struct inverse_folder own = {own_file, &run->folder, &run->fit.scene.units};
+    const struct inverse_folder own = {own_file, &run->folder, &run->fit.scene.units};
+    if (run->fit.method->write)
         TRY(run->fit.method->write(run->state, &own));
-    }
     TRY(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     mf_progress_report_written(&run->progress);
     mf_progress_print(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s",
@@ -323,7 +299,6 @@ static enum status take_change(struct run *run) {
 
 static enum status iterate(struct run *run) {
     const struct inverse_method *method = run->fit.method;
-    const struct inverse_listener listener = {report, run};
     if (run->standing.finished)
         mf_progress_print(&run->progress,
                           "the fit is finished: only its result is verified and written");
@@ -331,7 +306,8 @@ static enum status iterate(struct run *run) {
         struct inverse_step step;
         TRY(take_change(run));
         mf_task_log_use(&run->checkpoint.tasks);
-        const enum status status = method->iterate(run->state, &step, &listener);
+        const enum status status =
+            method->iterate(run->state, &step, &(struct inverse_listener){report, run});
         mf_task_log_use(NULL);
         TRY(status);
         TRY(mf_ranks_check(record(run, &step),
@@ -437,7 +413,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     enum status status = STATUS_OK;
     struct run *run = NULL;
     NEW_ARRAY(run, 1);
-    run->pace.interval = run->pace.next = checkpoint_interval;
+    run->pace.interval = run->pace.next = 30; // seconds between checkpoints in an iteration
     run->progress = mf_progress_begin(options->quiet, options->watcher);
     run->processor_origin = clock_process_seconds();
     run->spent_origin = mf_spent();
@@ -454,8 +430,7 @@ done:
             run->fit.method->destroy(run->state);
         mf_memory_free(run->state);
         mf_history_clear(&run->history);
-        if (options->engine)
-            options->engine->close(run->engine);
+        mf_fit_engine_close(&run->fit, options->engine);
         mf_unknowns_clear(&run->unknowns);
         for (int kind = 0; kind < UNKNOWNS; kind++) {
             mf_memory_free(run->curve[kind]);

@@ -59,6 +59,18 @@ static void print_time(double seconds, char text[TIME_SIZE]) {
         snprintf(text, TIME_SIZE, "%.2g h", seconds / 3600);
 }
 
+/// What another engine is asked for.
+static void print_engine(const struct fit_file *fit) {
+    const struct inversion_parameters *p = fit->method_parameters;
+    const int64_t steps = fit->engine.steps;
+    printf(
+        "The method \"%s\" samples by another engine (--engine): %lld replicas, of each at first "
+        "%lld time steps and then %lld frames, %lld steps apart; twice as many as often as they "
+        "are not exact enough.\n",
+        fit->method->name, (long long)p->replicas, (long long)(2 * p->equilibration * steps),
+        (long long)p->samples, (long long)(p->every * steps));
+}
+
 /// What an inversion looks at, and about how long: an iteration whose samples are as exact as is
 /// asked for. The first ones are shorter.
 static enum status print_sampling(const struct fit_file *fit) {
@@ -70,6 +82,10 @@ static enum status print_sampling(const struct fit_file *fit) {
                  range = mf_rdf_bins_range(&fit->problem.targets.bins);
     struct fit_scales_rdf rdf;
     char time[TIME_SIZE];
+    if (fit->engine.kind != ENGINE_NONE) {
+        print_engine(fit);
+        return STATUS_OK;
+    }
     printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
            "scene: %.0f particles, %.0f others within the range of g(r) of each.\n",
            fit->method->name, count, 2 * mf_stages_pairs_within(setup, range));

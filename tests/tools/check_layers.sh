@@ -91,7 +91,7 @@ faults=$(
     only_in 'src/\(report/program\|trajectory/h5md_canary\).c' '\bfork ?\(' 'starting a process'
     only_in src/base/clock.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
         'waiting until a time, by a clock that is never set back,'
-    only_in 'src/\(io/manifest\|io/tracked_files*\|io/output\|report/figure_script\|live/live_folder\|report/film\|bench/bench_lammps\).c' \
+    only_in 'src/\(io/manifest\|io/tracked_files*\|io/output\|report/figure_script\|live/live_folder\|report/film\|bench/bench_lammps\|engines/engine_folder\).c' \
         '\b(unlink|unlinkat|rmdir|remove|rename|renameat) ?\(' \
         'removing or renaming files goes through io/tracked_files.h and io/output.h, and'
     only_in src/base/terminal.c '"[^"]*\\(033|x1[bB]|e\[)' 'a command of the terminal'

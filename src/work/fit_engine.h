@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// @file The engine that samples for a fit: what its run file says, and its command line.
+#pragma once
+
+#include "defaults/fit_file.h"
+
+/// Open it for the problem of the fit; nothing if the file has none.
+/// @param[in]  door    who opens, with the command; NULL: nobody
+/// @param[in]  folder  of the fit
+/// Fails: BAD_INPUT if file and command line do not go together; as engine_door.open.
+enum status mf_fit_engine_open(struct fit_file *fit, const struct engine_door *door,
+                               const char *folder) MUST_USE;
+void mf_fit_engine_close(struct fit_file *fit, const struct engine_door *door);

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Fits whose samples another engine makes. The engine is a script that knows mesofit only by what
+// it finds in the folder of a piece; it lets `mesofit simulate` move the particles, by DPD, which
+// no inversion does by itself. A known potential is found, an interrupted fit has the same bits,
+// and what is wrong with an engine is said in one line. LAMMPS, where there is one.
+#include "shared/lammps_runs.h"
+#include "shared/results.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+#include "shared/twins.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SETUP                                                                                      \
+    "\"box\": [5, 5, 5], \"time_step\": 0.02, \"particles\": {\"count\": 250}, "                   \
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}"
+
+/// The truth.
+static const char scene[] =
+    "{\"seed\": 3, " SETUP ", \"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+    "\"rdf\": {\"range\": 1.2, \"bins\": 30},\n"
+    "\"measure\": {\"equilibration\": 500, \"samples\": 400, \"every\": 20}}\n";
+
+#define ENGINE "\"engine\": {\"name\": \"command\", \"frames\": \"frames.extxyz\", \"steps\": 20}"
+#define PLAN "\"replicas\": 4, \"samples\": 100, \"precision\": 0.008"
+static const char run[] =
+    "{\"seed\": 4, \"scene\": {" SETUP "},\n"
+    "\"target\": {\"rdf\": {\"file\": \"truth/rdf.tsv\", \"errors_of\": \"samples\"}},\n"
+    "\"unknowns\": {\"potential\": {\"truth\": {\"law\": \"soft-repulsion\", \"a\": 25}}},\n"
+    "\"verification\": {\"replicas\": 2, \"equilibration\": 300, \"samples\": 100, \"every\": "
+    "20},\n" ENGINE ",\n\"method\": {\"name\": \"auto\", " PLAN "}}\n";
+
+/// The other engine. A file "trouble" beside the run file tells it to fail, once.
+static const char engine[] =
+    "import glob, json, os, subprocess, sys\n"
+    "asked = json.load(open('engine.json'))\n"
+    "trouble = '../../../../trouble'\n"
+    "said = open(trouble).read() if os.path.exists(trouble) else ''\n"
+    "if said == 'dies' and asked['piece'] == 2 and asked['replica'] == 3:\n"
+    "    os.remove(trouble)\n"
+    "    sys.exit('the licence has expired')\n"
+    "scene = {'seed': asked['seed'], 'box': asked['box'], 'particles': {'count': 250},\n"
+    "    'time_step': 0.04 if said == 'hot' else 0.005,\n"
+    "    'conservative': {'law': 'table', 'file': 'potential.tsv'},\n"
+    "    'dissipative': {'law': 'power', 'sigma': 3},\n"
+    "    'measure': {'equilibration': asked['equilibration'] + 20, 'samples': asked['frames'],\n"
+    "                'every': asked['every']},\n"
+    "    'snapshots': {'every': asked['every'], 'formats': ['json', 'extxyz']}}\n"
+    "if 'before' in asked:\n"
+    "    last = sorted(glob.glob(asked['before'] + '/out/snapshots/*.json'))[-1]\n"
+    "    scene['particles'].update({'placement': 'file', 'file': last})\n"
+    "json.dump(scene, open('scene.json', 'w'))\n"
+    "subprocess.run([os.environ['MESOFIT'], 'simulate', 'scene.json', '--quiet', '--threads', '1'],"
+    "    env={'PATH': ''})\n"
+    "lines = open('out/snapshots/trajectory.extxyz').readlines()[252:]\n" // without the start
+    "if said == 'short': lines = lines[:-252]\n"
+    "open(asked['trajectory'], 'w').writelines(lines)\n"
+    "table = open('out/thermodynamics.tsv').read().splitlines()\n"
+    "names = [name.split('[')[0] for name in table[0].strip('# ').split('\\t')]\n"
+    "rows = [line.split() for line in table[1:]][-asked['frames']:]\n"
+    "def column(name): return [float(row[names.index(name)]) for row in rows]\n"
+    "energy = [250 * value + (50 if said == 'energy' else 0) for value in"
+    " column('potential_energy')]\n"
+    "json.dump({'temperature': column('temperature'), 'pressure': column('pressure'),\n"
+    "           'pair_energy': energy}, open('sample.json', 'w'))\n";
+
+#define COMMAND "python3 ../../../../engine.py"
+
+static struct run_program_result result;
+
+static int enter(void **state) {
+    if (small_inputs_enter(state) != 0)
+        return -1;
+    small_inputs_write(*state, "truth.json", scene, NULL, NULL);
+    small_inputs_write(*state, "engine.py", engine, NULL, NULL);
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    twins_simulate("truth.json", "truth");
+    return 0;
+}
+
+/// Few samples, for what does not ask how good a result is.
+static void write_coarse(void *state, const char *file) {
+    small_inputs_write(state, file, run, PLAN,
+                       "\"replicas\": 4, \"equilibration\": 10, \"samples\": 30, \"precision\": "
+                       "0.1, \"iterations\": 2");
+    small_inputs_change(state, file, "\"equilibration\": 300, \"samples\": 100",
+                        "\"equilibration\": 40, \"samples\": 10");
+}
+
+static bool is_there(const char *path) {
+    struct stat found;
+    return stat(path, &found) == 0;
+}
+
+static void test_a_known_potential_is_found(void **state) {
+    (void)state;
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", COMMAND);
+    run_program_assert_code(&result, 0);
+    const double ramp = results_number("out/summary.json", "truth_ramp");
+    const double error = results_number("out/summary.json", "ramp_error");
+    print_message("ramp %.3f +- %.3f\n", ramp, error);
+    assert_true(fabs(ramp) < 5 * error);
+    assert_true(results_number("out/summary.json", "truth_rms_without_ramp") < 0.15);
+    assert_true(results_number("out/summary.json", "rdf_rmse") < 0.02);
+    // The engine verified it, too, and said at which temperature.
+    assert_in_range(1000 * results_number("out/summary.json", "temperature"), 950, 1050);
+    assert_true(is_there("out/engine/verification/01/engine.json"));
+    // The last two pieces of each replica stay.
+    int pieces = 0;
+    for (int n = 1; n < 100; n++) {
+        char path[64];
+        snprintf(path, sizeof path, "out/engine/%04d/01", n);
+        pieces += is_there(path);
+    }
+    assert_int_equal(pieces, 2);
+}
+
+static void test_a_fit_whose_engine_died_goes_on_with_the_same_bits(void **state) {
+    static const char *const same[] = {"potential.tsv", "rdf.tsv", NULL};
+    write_coarse(*state, "coarse.json");
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "whole", "--engine", COMMAND);
+    assert_in_range(result.code, 0, 1);
+    temporary_folder_write(*state, "trouble", "dies", 4);
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", COMMAND, "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_int_equal(run_program_lines(result.err), 1);
+    assert_non_null(strstr(result.err, "out/engine/0002/03: the licence has expired"));
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", COMMAND, "--resume");
+    assert_in_range(result.code, 0, 1);
+    results_assert_same("whole", "out", same);
+}
+
+static void test_what_is_wrong_with_an_engine_is_said(void **state) {
+    static const struct {
+        const char *trouble, *word;
+        int code;
+    } cases[] = {{"energy", "of the same configuration the engine has the energy", 2},
+                 {"short", "it ends after 31 of the 32 frames", 2},
+                 {"hot", "the engine samples at a temperature that is", 1}};
+    write_coarse(*state, "coarse.json");
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        temporary_folder_write(*state, "trouble", cases[k].trouble, strlen(cases[k].trouble));
+        RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", COMMAND, "--quiet",
+                    "--force");
+        run_program_assert_code(&result, cases[k].code);
+        if (strstr(result.err, cases[k].word) == NULL)
+            fail_msg("%s: %s", cases[k].trouble, result.err);
+        assert_int_equal(run_program_lines(result.err), 1);
+    }
+    unlink("trouble");
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "new", "--engine", "no-such-engine",
+                "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "no-such-engine"));
+}
+
+static void refuse(void *state, const char *from, const char *to, const char *command,
+                   const char *word) {
+    const char *words[] = {word, NULL};
+    small_inputs_write(state, "wrong.json", run, from, to);
+    if (command)
+        RUN_PROGRAM(&result, "fit", "wrong.json", "-o", "wrong", "--engine", command, "--quiet");
+    else
+        RUN_PROGRAM(&result, "fit", "wrong.json", "-o", "wrong", "--quiet");
+    run_program_assert_refused(&result, "wrong", word, 1, words);
+}
+
+static void test_wrong_settings_are_refused(void **state) {
+    refuse(*state, NULL, NULL, NULL, "--engine \"COMMAND\"");
+    refuse(*state, ENGINE, "\"core\": {}", COMMAND, "the run file has no \"engine\"");
+    refuse(*state, ", \"frames\": \"frames.extxyz\"", "", COMMAND, "engine.frames: missing");
+    refuse(*state, "\"steps\": 20", "\"input\": \"in.lmp\"", COMMAND, "engine.input");
+    refuse(*state, "\"name\": \"auto\", " PLAN, "\"name\": \"cma-es\"", COMMAND,
+           "it samples for inversions alone");
+    refuse(*state, "\"steps\": 20", "\"types\": {\"1\": \"Q\"}", COMMAND, "engine.types.1");
+}
+
+static void test_lammps_finds_the_potential(void **state) {
+    lammps_runs_skip_without(NULL);
+    small_inputs_write(*state, "run.json", run, ENGINE,
+                       "\"engine\": {\"name\": \"lammps\", \"time_step\": 0.005, \"steps\": 20}");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", "lmp");
+    run_program_assert_code(&result, 0);
+    assert_true(fabs(results_number("out/summary.json", "truth_ramp")) <
+                5 * results_number("out/summary.json", "ramp_error"));
+    assert_true(results_number("out/summary.json", "truth_rms_without_ramp") < 0.15);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_a_known_potential_is_found, enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_a_fit_whose_engine_died_goes_on_with_the_same_bits,
+                                        enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_what_is_wrong_with_an_engine_is_said, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_wrong_settings_are_refused, enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_lammps_finds_the_potential, enter, small_inputs_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
