@@ -226,9 +226,9 @@ def _samples(measure: Mapping[str, Any], steps: int) -> int:
 
 
 def fit(target: Any, /, *, density: float | None = None, temperature: float | None = None,
-        folder: PathLike | None = None, threads: int | None = None, seed: int | None = None,
-        resume: bool = False, force: bool = False, progress: bool | None = None,
-        **keys: Any) -> Result:
+        engine: str | None = None, folder: PathLike | None = None, threads: int | None = None,
+        seed: int | None = None, resume: bool = False, force: bool = False,
+        progress: bool | None = None, **keys: Any) -> Result:
     """Find the potential, and the friction, that reproduce a target, as `mesofit fit` does.
 
     Parameters
@@ -237,6 +237,8 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
         What `measure` has returned, what a run file says, its path, or the folder of a target.
     density, temperature : float, optional
         Of a target that does not say them, in its units: 1/nm³ and K of one that `measure` made.
+    engine : str, optional
+        Command of the engine that samples (docs/any-engine.md), as "lmp"; the run file says what it is.
     folder, threads, seed, resume, force, progress
         As of `simulate`.
     **keys
@@ -272,7 +274,7 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
                                       temperature=temperature)]
     else:
         words = ["fit", _lend(target, _filled(keys, density, temperature), "run", memory)]
-    words += _options(threads=threads, seed=seed)
+    words += _options(engine=engine, threads=threads, seed=seed)
     return _carry_out(words, memory, folder, resume, force, progress)
 
 

@@ -28,6 +28,7 @@ static const struct inner run_objects[] = {
     {"units", "units of the file and its results, \"nm-ps\" or \"angstrom-fs\"", "units",
      TOPIC_ONE},
     {"core", "region where the target is 0", "core", TOPIC_ONE},
+    {"engine", "another program that samples for an inversion", "engine", TOPIC_ONE},
     {"verification", "independent simulations of the result", "verification", TOPIC_ONE},
     {"states",
      "systems that share a potential, {\"dilute\": {\"scene\": {…}, …}, …}, with this file's keys "
@@ -171,6 +172,11 @@ static const struct topic fixed_topics[] = {
      "\"units\" of a scene in reduced units: physical units for its results",
      {mf_units_fields}},
     {"files", "core", "\"core\" of a run file: where the target is 0", {mf_fit_core_fields}},
+    {"files",
+     "engine",
+     "\"engine\" of a run file: another program that samples; \"types\": {\"1\": \"A\", …} says "
+     "what it calls the scene's",
+     {mf_sampling_engine_fields}},
     {"files",
      "verification",
      "\"verification\" of a run file: independent simulations of the result",

@@ -274,6 +274,8 @@ static void write_texts(struct json_writer *writer, const char *key) {
 static void write_own_keys(struct json_writer *writer, const char *topic) {
     if (strcmp(topic, "particles") == 0)
         write_by_name(writer, "types", "integer");
+    if (strcmp(topic, "engine") == 0)
+        write_by_name(writer, "types", "string");
     if (strcmp(topic, "map") == 0)
         write_by_name(writer, "masses", "number");
     if (strcmp(topic, "molecule") == 0 || strcmp(topic, "chain") == 0)

@@ -216,10 +216,12 @@ static void choose_rounds(struct fit_choice *c) {
 
 enum status mf_fit_defaults_method(struct fit_choice *c) {
     const bool simulates = c->finds[UNKNOWN_OMEGA] || c->fit->numbers > 0;
+    // Where there is more than the scene knows, nothing but the samples tells how g responds.
+    const bool goes_by_samples = c->fit->name[0] || c->fit->engine.input[0];
     const bool both = simulates && c->finds[UNKNOWN_POTENTIAL] && c->fit->numbers == 0;
     const struct inverse_method *method = both              ? &mf_successive
                                           : simulates       ? &mf_gauss_newton
-                                          : c->fit->name[0] ? &mf_imc
+                                          : goes_by_samples ? &mf_imc
                                                             : &mf_automatic;
     const double particles = choose_particles(c);
     TRY(mf_fit_defaults_take_method(c, method));
