@@ -174,8 +174,7 @@ static const struct topic fixed_topics[] = {
     {"files", "core", "\"core\" of a run file: where the target is 0", {mf_fit_core_fields}},
     {"files",
      "engine",
-     "\"engine\" of a run file: another program that samples; \"types\": {\"1\": \"A\", …} says "
-     "what it calls the scene's",
+     "\"engine\" of a run file: another program that samples; \"types\": {\"1\": \"A\", …}",
      {mf_sampling_engine_fields}},
     {"files",
      "verification",

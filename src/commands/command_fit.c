@@ -29,7 +29,7 @@ static const struct command_option options[] = {
                      "temperature of the target, without target.json; else 1"},
     [FRICTION] = {"--friction", "free|exportable|linear",
                   "omega: any, one that LAMMPS runs, or HOOMD and ESPResSo too"},
-    [ENGINE] = {"--engine", "COMMAND", "what runs the \"engine\" of the run file, which samples"},
+    [ENGINE] = {"--engine", "COMMAND", "command of the run file's \"engine\""},
     [LIVE] = COMMAND_LIVE_OPTION,
     {NULL, NULL, NULL},
 };

@@ -6,20 +6,18 @@ const char *const mf_sampling_engine_kinds[] = {"none", "lammps", "command", NUL
 #define MEMBER(name) .offset = offsetof(struct engine_settings, name)
 const struct field mf_sampling_engine_fields[] = {
     {"name", FIELD_CHOICE, MEMBER(kind), .choices = mf_sampling_engine_kinds,
-     .initial = ENGINE_NONE, .unit = "",
-     .help = "who samples in the place of mesofit; the command stands after --engine"},
+     .initial = ENGINE_NONE, .unit = "", .help = "who samples; its command stands after --engine"},
     {"input", FIELD_FILE, MEMBER(input), .unit = "",
-     .help = "LAMMPS input with `include mesofit.lmp` and `include mesofit-run.lmp`; without it "
-             "one is written for the scene"},
+     .help = "LAMMPS input with two includes (any-engine.md); none: one is written"},
     {"frames", FIELD_TEXT, MEMBER(frames), .unit = "",
-     .help = "trajectory that the command leaves in the folder of a piece"},
+     .help = "trajectory that the command leaves"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "tau", .help = "time step of an input that is written; 0: the scene's"},
+     .unit = "tau", .help = "of an input that is written; 0: the scene's"},
     {"steps", FIELD_INTEGER, MEMBER(steps), .initial = 10, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "time steps that count as a sweep of \"method\""},
     {"at_once", FIELD_INTEGER, MEMBER(at_once), .initial = 0, .minimum = 0, .maximum = 1024,
-     .unit = "", .help = "replicas that run side by side; 0: as many as --threads"},
+     .unit = "", .help = "replicas side by side; 0: as --threads"},
     {"keep", FIELD_INTEGER, MEMBER(keep), .initial = 2, .minimum = 1, .maximum = 1e9, .unit = "",
-     .help = "pieces of each replica whose files stay in the folder engine"},
+     .help = "pieces of each replica whose files stay"},
     FIELD_END,
 };

@@ -20,8 +20,7 @@ static const char *const no_or_yes[] = {"no", "yes", NULL};
 #define MEMBER(name) .offset = offsetof(struct verify_parameters, name)
 const struct field mf_verify_fields[] = {
     {"by", FIELD_CHOICE, MEMBER(by), .choices = by, .initial = VERIFY_BY_AUTO, .unit = "",
-     .help = "who simulates; auto: the \"engine\" if it is a command or has an \"input\", else "
-             "mesofit"},
+     .help = "who simulates; auto: a command or \"input\", else mesofit"},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 4, .minimum = 1, .maximum = 1024,
      .unit = "", .help = "independent simulations"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
