@@ -19,7 +19,7 @@ GROUPS = (
     ("What goes in", ("Frames", "Scene", "law")),
     ("What comes out", ("Result", "Table", "Curves")),
     ("Driven by the caller", ("Simulation", "Rdf", "Means", "FORCE", "OBSERVABLE", "Problem", "State",
-                              "Curve", "Value", "Optimiser")),
+                              "Curve", "Value", "Optimiser", "Inversion", "Piece")),
     ("Errors and warnings", ("Error", "InputError", "FileError", "UnstableError", "MesofitWarning",
                              "UnconvergedWarning", "InterruptedWarning")),
 )

@@ -15,6 +15,7 @@ from ._errors import (
     UnstableError,
 )
 from ._inputs import Frames
+from ._inversion import Inversion, Piece
 from ._library import FORCE, OBSERVABLE, version as __version__
 from ._problem import Curve, Optimiser, Problem, State, Value
 from ._result import Result, open
@@ -24,7 +25,7 @@ from ._work import Scene, fit, import_votca, law, measure, simulate
 
 __all__ = [
     "Curve", "Curves", "Error", "FORCE", "FileError", "Frames", "InputError",
-    "InterruptedWarning", "Means", "MesofitWarning", "OBSERVABLE", "Optimiser", "Problem", "Rdf",
+    "InterruptedWarning", "Inversion", "Means", "MesofitWarning", "OBSERVABLE", "Optimiser", "Piece", "Problem", "Rdf",
     "Result", "Scene", "Simulation", "State", "Table", "UnconvergedWarning", "UnstableError", "Value",
     "__version__", "fit", "import_votca", "law", "measure", "open", "simulate",
 ]

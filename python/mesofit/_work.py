@@ -257,6 +257,14 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
     FileError, UnstableError, KeyboardInterrupt
         As of `simulate`.
     """
+    return fit_with(target, keys, _options(engine=engine, threads=threads, seed=seed), folder, resume,
+                    force, progress, density=density, temperature=temperature)
+
+
+def fit_with(target: Any, keys: dict[str, Any], words: list[str], folder: PathLike | None,
+             resume: bool, force: bool, progress: bool | None, *, density: float | None = None,
+             temperature: float | None = None) -> Result:
+    """`fit` with keys of the run file and words of the command line."""
     memory = Memory()
     if isinstance(keys.get("method"), str):
         keys["method"] = {"name": keys["method"]}
@@ -265,17 +273,13 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
     if not isinstance(target, (Mapping, str, os.PathLike)):
         raise InputError(f"target: expected a result of measure, a dict or a path, found "
                          f"{type(target).__name__}")
-    if not isinstance(target, Mapping) and os.path.isdir(target):
-        if keys:
-            target = Path(target) / "target.json"
-            words = ["fit", _lend(target, _filled(keys, density, temperature), "run", memory)]
-        else:
-            words = ["fit", *_options(target=Path(target), density=density,
-                                      temperature=temperature)]
+    if not isinstance(target, Mapping) and os.path.isdir(target) and not keys:
+        own = _options(target=Path(target), density=density, temperature=temperature)
     else:
-        words = ["fit", _lend(target, _filled(keys, density, temperature), "run", memory)]
-    words += _options(engine=engine, threads=threads, seed=seed)
-    return _carry_out(words, memory, folder, resume, force, progress)
+        if not isinstance(target, Mapping) and os.path.isdir(target):
+            target = Path(target) / "target.json"
+        own = [_lend(target, _filled(keys, density, temperature), "run", memory)]
+    return _carry_out(["fit", *own, *words], memory, folder, resume, force, progress)
 
 
 def _filled(keys: Mapping[str, Any], density: float | None,

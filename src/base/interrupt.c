@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 static volatile sig_atomic_t received; ///< the first signal; 0: none
-static atomic_bool wanted, deferred;
+static atomic_bool wanted, deferred, planned;
 static atomic_int common; ///< the signal by which all stop; 0: none
 
 static void remember(int signal_number) {
@@ -69,7 +69,11 @@ bool mf_interrupt_requested(void) {
 }
 
 bool mf_interrupt_was_planned(void) {
-    return reason() == SIGTERM || reason() == SIGUSR1;
+    return atomic_load(&planned) || reason() == SIGTERM || reason() == SIGUSR1;
+}
+
+void mf_interrupt_plan(void) {
+    atomic_store(&planned, true);
 }
 
 bool mf_interrupt_wanted(const atomic_bool *cancel) {

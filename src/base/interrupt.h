@@ -24,6 +24,9 @@ bool mf_interrupt_wanted(const atomic_bool *cancel);
 /// has: this is no failure.
 bool mf_interrupt_was_planned(void);
 
+/// From now on a stop is no failure: the work waits for somebody else.
+void mf_interrupt_plan(void);
+
 /// @name Several processes that must stop at the same place
 /// From now on nothing but mf_interrupt_stop_by stops this process.
 void mf_interrupt_defer(void);

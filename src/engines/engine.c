@@ -7,6 +7,7 @@
 #include "report/program.h"
 
 #include <string.h>
+#include <sys/stat.h>
 
 static const struct engine_tongue *const tongues[] = {
     [ENGINE_LAMMPS] = &mf_engine_lammps, [ENGINE_COMMAND] = &mf_engine_command};
@@ -31,11 +32,11 @@ void mf_engine_folder(const struct engine_run *run, size_t replica, uint64_t num
 /// One thread prepares what all pieces share; the others wait for it.
 static enum status prepare(struct engine_run *run, const struct engine_piece *piece) {
     enum status status = STATUS_OK;
-    pthread_mutex_lock(&run->first);
+    pthread_mutex_lock(&run->lock);
     if (!run->prepared && run->tongue->prepare)
         status = run->tongue->prepare(run, piece);
     run->prepared = status == STATUS_OK;
-    pthread_mutex_unlock(&run->first);
+    pthread_mutex_unlock(&run->lock);
     return status;
 }
 
@@ -71,24 +72,91 @@ static enum status run_command(const struct engine_run *run, const struct engine
     return status == STATUS_OK ? STATUS_OK : explain(run, status, folder, said);
 }
 
+/// A line that runs a piece by hand: sh run.sh COMMAND.
+static enum status write_script(const struct engine_run *run, const struct engine_piece *piece,
+                                const char *folder) {
+    enum { TEXT = 512 };
+    const char *words[ENGINE_MAX_WORDS + 1] = {NULL};
+    char text[TEXT], script[OUTPUT_PATH_SIZE];
+    if (run->tongue->words)
+        run->tongue->words(run, piece, words, text, sizeof text);
+    int length = snprintf(script, sizeof script,
+                          "#!/bin/sh\n# sh run.sh COMMAND: what --engine COMMAND runs here\n"
+                          "cd \"$(dirname \"$0\")\" && exec \"$@\"");
+    for (size_t k = 0; words[k]; k++)
+        length += snprintf(script + length, sizeof script - (size_t)length, " %s", words[k]);
+    snprintf(script + length, sizeof script - (size_t)length, "\n");
+    return mf_engine_write_text(folder, "run.sh", script);
+}
+
+static enum status write_piece(struct engine_run *run, const struct engine_piece *piece,
+                               const char *folder) {
+    TRY(prepare(run, piece));
+    TRY(mf_engine_folder_make(run->folder, folder));
+    TRY(run->tongue->write(run, piece, folder));
+    return write_script(run, piece, folder);
+}
+
+/// Whether a piece that somebody else runs is there.
+static bool has_frames(const struct engine_run *run, const char *folder) {
+    char path[OUTPUT_PATH_SIZE];
+    struct stat found;
+    mf_engine_path(folder, run->tongue->frames(run), path);
+    return stat(path, &found) == 0;
+}
+
+/// Add a line to the list of the folders that wait for their frames; NULL: begin it.
+static enum status list_waiting(struct engine_run *run, const char *folder) {
+    char path[OUTPUT_PATH_SIZE];
+    mf_engine_path(run->folder, "engine/waiting", path);
+    pthread_mutex_lock(&run->lock);
+    FILE *list = fopen(path, folder ? "a" : "w");
+    bool written = list != NULL;
+    if (written && folder)
+        written = fprintf(list, "%s\n", folder) > 0;
+    if (list != NULL && fclose(list) != 0)
+        written = false;
+    pthread_mutex_unlock(&run->lock);
+    return written ? STATUS_OK : mf_status_fail(STATUS_IO, "%s: cannot be written", path);
+}
+
+/// Of who runs the pieces elsewhere: what is there already stays.
+static enum status announce(void *context, const struct engine_piece *piece) {
+    struct engine_run *run = context;
+    char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE];
+    struct stat found;
+    mf_engine_folder(run, piece->replica, piece->number, folder);
+    mf_engine_path(folder, "run.sh", path);
+    TRY(stat(path, &found) == 0 ? prepare(run, piece) : write_piece(run, piece, folder));
+    return has_frames(run, folder) ? STATUS_OK : list_waiting(run, folder);
+}
+
 static enum status begin(void *context, const struct engine_piece *piece, void **frames) {
     struct engine_run *run = context;
     const uint64_t keep = (uint64_t)run->settings->keep;
     char folder[OUTPUT_PATH_SIZE], old[OUTPUT_PATH_SIZE];
     mf_engine_folder(run, piece->replica, piece->number, folder);
-    TRY(prepare(run, piece));
-    TRY(mf_engine_folder_make(run->folder, folder));
-    TRY(run->tongue->write(run, piece, folder));
-    TRY(run_command(run, piece, folder));
+    if (run->later && !has_frames(run, folder)) {
+        atomic_store(&run->waits, true);
+        return mf_status_fail(STATUS_INTERRUPTED, "%s is waited for", folder);
+    }
+    if (!run->later) {
+        TRY(write_piece(run, piece, folder));
+        TRY(run_command(run, piece, folder));
+    }
     TRY(mf_engine_frames_open(run, piece, folder, (struct engine_frames **)frames));
-    if (piece->number <= keep)
+    if (run->later || piece->number <= keep)
         return STATUS_OK;
     mf_engine_folder(run, piece->replica, piece->number - keep, old);
     return mf_engine_folder_remove(old);
 }
 
 static enum status open_engine(const char *command, const struct fit_file *fit, const char *folder,
-                               const struct sampling_engine **engine) {
+                               bool resume, const struct sampling_engine **engine) {
+    char own[OUTPUT_PATH_SIZE];
+    mf_engine_path(folder, "engine", own);
+    if (!resume)
+        TRY(mf_engine_folder_remove(own)); // of an earlier fit
     struct engine_run *run = mf_memory_zeroed(1, sizeof *run);
     if (run == NULL)
         return STATUS_NO_MEMORY;
@@ -97,18 +165,34 @@ static enum status open_engine(const char *command, const struct fit_file *fit, 
     run->settings = settings;
     run->fit = fit;
     run->command = command;
+    run->later = strcmp(command, ENGINE_LATER) == 0;
     run->folder = folder;
-    pthread_mutex_init(&run->first, NULL);
+    pthread_mutex_init(&run->lock, NULL);
     run->engine =
         (struct sampling_engine){.context = run,
                                  .steps = settings->steps,
                                  .at_once = (int)settings->at_once,
                                  .whole_energy = run->tongue->whole_energy && !settings->input[0],
+                                 .announce = run->later ? announce : NULL,
                                  .begin = begin,
                                  .next = mf_engine_frames_next,
                                  .end = mf_engine_frames_close};
     *engine = &run->engine;
-    return STATUS_OK;
+    if (!run->later)
+        return STATUS_OK;
+    mkdir(own, 0777);
+    return list_waiting(run, NULL);
+}
+
+static bool waits(const struct sampling_engine *engine, char *text, size_t size) {
+    const struct engine_run *run = engine->context;
+    if (atomic_load(&run->waits))
+        snprintf(text, size,
+                 "waits for samples: run the pieces whose folders are listed in %.2000s/engine/"
+                 "waiting, each by its run.sh or as you like, and go on with --engine later "
+                 "--resume",
+                 run->folder);
+    return atomic_load(&run->waits);
 }
 
 static void close_engine(const struct sampling_engine *engine) {
@@ -117,10 +201,10 @@ static void close_engine(const struct sampling_engine *engine) {
     struct engine_run *run = engine->context;
     if (run->tongue->forget)
         run->tongue->forget(run);
-    pthread_mutex_destroy(&run->first);
+    pthread_mutex_destroy(&run->lock);
     mf_memory_free(run);
 }
 
 struct engine_door mf_engine_door(const char *command) {
-    return (struct engine_door){command, open_engine, close_engine};
+    return (struct engine_door){command, open_engine, waits, close_engine};
 }

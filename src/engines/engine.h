@@ -16,6 +16,7 @@
 #include "trajectory/trajectory.h"
 
 #include <pthread.h>
+#include <stdatomic.h>
 
 struct engine_run;
 
@@ -62,11 +63,17 @@ struct engine_run {
     const struct engine_settings *settings;
     const struct fit_file *fit;
     const char *command;
+    bool later;         ///< somebody else runs the pieces (ENGINE_LATER)
+    atomic_bool waits;  ///< for a piece that is not there yet
     const char *folder; ///< of the fit; borrowed
-    pthread_mutex_t first;
+    pthread_mutex_t lock;
     bool prepared;
     void *own; ///< of the tongue
 };
+
+/// The command that is none: pieces are written, and the fit ends; it goes on once somebody has run
+/// them, on this machine or another.
+#define ENGINE_LATER "later"
 
 /// Path of the folder of a piece, into `path` of OUTPUT_PATH_SIZE bytes.
 void mf_engine_folder(const struct engine_run *run, size_t replica, uint64_t number, char *path);

@@ -60,6 +60,19 @@ static void print_table(const void *memory, FILE *stream) {
     }
 }
 
+/// How many beads of each type there are, in their order.
+static void write_beads(const struct engine_run *run, struct json_writer *writer) {
+    const struct simulation_setup *setup = &run->fit->scene.setup;
+    const struct composition *composition = &setup->composition;
+    mf_json_begin(writer, "beads");
+    for (int type = 0; type < composition->types; type++)
+        mf_json_write_integer(writer, composition->name[type][0] ? composition->name[type] : "A",
+                              composition->count[type]);
+    if (composition->types == 0)
+        mf_json_write_integer(writer, "A", setup->placement.count);
+    mf_json_end(writer);
+}
+
 /// What is asked for.
 static void describe(const struct job *job, struct json_writer *writer) {
     const struct engine_run *run = job->run;
@@ -75,6 +88,7 @@ static void describe(const struct job *job, struct json_writer *writer) {
     mf_json_write_quantity(writer, "temperature", "T_0", piece->temperature);
     mf_json_write_quantities(writer, "box", "lambda", setup->box.length,
                              (size_t)setup->box.dimensions);
+    write_beads(run, writer);
     mf_json_write_integer(writer, "equilibration", (int64_t)engine_steps(run, piece->lead));
     mf_json_write_integer(writer, "frames", (int64_t)piece->frames);
     mf_json_write_integer(writer, "every", (int64_t)engine_steps(run, piece->every));

@@ -4,5 +4,5 @@
 
 #include "scene/run_options.h"
 
-/// What the option --engine has said: NULL for nothing.
+/// What the option --engine has said: a command, "later", or NULL for nothing.
 struct engine_door mf_engine_door(const char *command);

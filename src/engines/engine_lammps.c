@@ -132,8 +132,6 @@ static enum status prepare(struct engine_run *run, const struct engine_piece *pi
     shared->model.scene.start = run->fit->scene.start;
     TRY(mf_export_start_find(&shared->model));
     mf_engine_path(run->folder, "engine", folder);
-    if (mkdir(folder, 0777) != 0 && piece->number == 1)
-        TRY(mf_engine_folder_remove(folder)); // of an earlier fit
     mkdir(folder, 0777);
     return write_data(run, shared);
 }

@@ -179,9 +179,19 @@ run_all(struct replicas *replicas, const struct replicas_plan *plan, int threads
     return STATUS_OK;
 }
 
+/// Tell all samplers what comes, before the first of them is waited for.
+static enum status announce(struct replicas *replicas, const struct replicas_plan *plan,
+                            bool scatter, int64_t lead, int64_t blocks) {
+    for (size_t k = 0; k < replicas->count; k++)
+        TRY(mf_sampler_announce(&replicas->member[k].sampler, scatter, (uint64_t)lead,
+                                (uint64_t)(blocks * plan->block_samples), (uint64_t)plan->every));
+    return STATUS_OK;
+}
+
 enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan,
                             int threads, const struct inverse_progress *progress,
                             const struct inverse_listener *listener) {
+    TRY(announce(replicas, plan, plan->scatter, plan->equilibration, REPLICAS_BLOCKS));
     return run_all(replicas, plan, threads, progress, listener, run_one);
 }
 
@@ -189,6 +199,7 @@ enum status mf_replicas_double(struct replicas *replicas, struct replicas_plan *
                                const struct inverse_progress *progress,
                                const struct inverse_listener *listener) {
     plan->block_samples *= 2;
+    TRY(announce(replicas, plan, false, 0, REPLICAS_BLOCKS / 2));
     return run_all(replicas, plan, threads, progress, listener, double_one);
 }
 

@@ -99,6 +99,13 @@ enum status mf_sampler_equilibrate(struct sampler *sampler, uint64_t sweeps) {
     return sampler->source->equilibrate(sampler->own, sweeps);
 }
 
+enum status mf_sampler_announce(struct sampler *sampler, bool scatter, uint64_t lead,
+                                uint64_t samples, uint64_t every) {
+    return sampler->source->announce
+               ? sampler->source->announce(sampler->own, scatter, lead, samples, every)
+               : STATUS_OK;
+}
+
 enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) {
     return sampler->source->plan ? sampler->source->plan(sampler->own, samples, every) : STATUS_OK;
 }

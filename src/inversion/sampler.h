@@ -104,6 +104,11 @@ enum sampler_sum {
     SAMPLER_SUMS,
 };
 
+/// What will be asked for: a scatter or not, sweeps of equilibration, samples, sweeps between them.
+/// Fails: as sampling_engine.announce.
+enum status mf_sampler_announce(struct sampler *sampler, bool scatter, uint64_t lead,
+                                uint64_t samples, uint64_t every) MUST_USE;
+
 /// So many samples come next, with so many sweeps between them. Fails: as sampling_engine.begin.
 enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) MUST_USE;
 

@@ -69,21 +69,36 @@ static enum status equilibrate(void *own, uint64_t sweeps) {
     return STATUS_OK;
 }
 
+static struct engine_piece describe(const struct engine_source *source, bool fresh, uint64_t lead,
+                                    uint64_t samples, uint64_t every) {
+    return (struct engine_piece){.replica = source->replica,
+                                 .number = source->number + 1,
+                                 .fresh = fresh,
+                                 .seed = source->seed,
+                                 .temperature = source->temperature,
+                                 .potential = source->potential,
+                                 .molecules = source->molecules,
+                                 .lead = lead,
+                                 .frames = samples,
+                                 .every = every};
+}
+
+static enum status announce(void *own, bool scatter, uint64_t lead, uint64_t samples,
+                            uint64_t every) {
+    const struct engine_source *source = own;
+    const struct engine_piece piece =
+        describe(source, scatter || source->fresh, lead, samples, every);
+    return source->engine->announce ? source->engine->announce(source->engine->context, &piece)
+                                    : STATUS_OK;
+}
+
 /// Ask for all samples that come next, at once.
 static enum status plan(void *own, uint64_t samples, uint64_t every) {
     struct engine_source *source = own;
     source->engine->end(source->frames);
     source->frames = NULL;
-    const struct engine_piece piece = {.replica = source->replica,
-                                       .number = ++source->number,
-                                       .fresh = source->fresh,
-                                       .seed = source->seed,
-                                       .temperature = source->temperature,
-                                       .potential = source->potential,
-                                       .molecules = source->molecules,
-                                       .lead = source->lead,
-                                       .frames = samples,
-                                       .every = every};
+    const struct engine_piece piece = describe(source, source->fresh, source->lead, samples, every);
+    source->number++;
     const enum status status =
         source->engine->begin(source->engine->context, &piece, &source->frames);
     source->fresh = status != STATUS_OK; // from what it has not left nothing goes on
@@ -179,6 +194,7 @@ const struct sampler_source mf_sampler_engine = {.size = sizeof(struct engine_so
                                                  .scatter = scatter,
                                                  .begin = begin,
                                                  .equilibrate = equilibrate,
+                                                 .announce = announce,
                                                  .plan = plan,
                                                  .run = run,
                                                  .acceptance = acceptance,

@@ -24,6 +24,10 @@ struct sampler_source {
     enum status (*begin)(void *own);
     /// Sweeps that are not counted and tune what there is to tune.
     enum status (*equilibrate)(void *own, uint64_t sweeps);
+    /// What will be asked for, before any replica is sampled: scatter or not, sweeps of
+    /// equilibrate, samples and sweeps between them; NULL: nobody wants to know.
+    enum status (*announce)(void *own, bool scatter, uint64_t lead, uint64_t samples,
+                            uint64_t every);
     /// So many samples come next, with so many sweeps between them; NULL: that does not matter.
     enum status (*plan)(void *own, uint64_t samples, uint64_t every);
     /// Sweeps, then the pairs of the configuration that they lead to.

@@ -12,7 +12,7 @@ const struct field mf_sampling_engine_fields[] = {
     {"frames", FIELD_TEXT, MEMBER(frames), .unit = "",
      .help = "trajectory that the command leaves"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "tau", .help = "of an input that is written; 0: the scene's"},
+     .unit = "tau", .help = "of a written input; 0: the scene's"},
     {"steps", FIELD_INTEGER, MEMBER(steps), .initial = 10, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "time steps that count as a sweep of \"method\""},
     {"at_once", FIELD_INTEGER, MEMBER(at_once), .initial = 0, .minimum = 0, .maximum = 1024,

@@ -68,11 +68,14 @@ static enum status replay_replica(const struct work *work, size_t number,
                                   const struct measurement_setup *setup) {
     struct inverse_problem problem = *work->problem;
     struct engine_piece *piece = &work->replay[number].piece;
+    const struct sampling_engine *engine = problem.engine;
     piece->seed = setup->seed;
     piece->potential = work->potential;
     piece->molecules = mf_molecules_find(problem.scene.interaction, problem.scene.interactions);
     problem.scene.integrator = &mf_engine_replay;
     problem.scene.integrator_parameters = &work->replay[number];
+    if (engine->announce)
+        TRY(engine->announce(engine->context, piece));
     return mf_measurement_init(&work->replicas[number], &problem, setup);
 }
 

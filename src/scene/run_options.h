@@ -27,8 +27,11 @@ enum run_words {
 struct engine_door {
     const char *command; ///< NULL: none was named
     /// Fails: BAD_INPUT for a scene that it cannot sample; NO_MEMORY.
+    /// @param[in] resume  the fit goes on, so that what lies in its folder is its own
     enum status (*open)(const char *command, const struct fit_file *fit, const char *folder,
-                        const struct sampling_engine **engine);
+                        bool resume, const struct sampling_engine **engine);
+    /// Say for what a fit that was stopped waits, into `text`; false if it does not.
+    bool (*waits)(const struct sampling_engine *engine, char *text, size_t size);
     void (*close)(const struct sampling_engine *engine); ///< of NULL: nothing
 };
 

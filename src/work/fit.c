@@ -137,7 +137,7 @@ static enum status read_and_create(struct run *run, const char *file,
     TRY(mf_run_folder_open(&run->folder, RUN_FIT, file, &run->fit.inputs, options));
     TRY(mf_fit_verify_folders(&run->fit, &run->folder));
     TRY(mf_fit_states_normalise(&run->fit));
-    TRY(mf_fit_engine_open(&run->fit, options->engine, run->folder.path));
+    TRY(mf_fit_engine_open(&run->fit, options->engine, run->folder.path, options->resume));
     const enum status status = create(run);
     if (status != STATUS_OK)
         return mf_status_prefix(mf_units_convert_message(&run->fit.scene.units, status), "%s",
@@ -396,13 +396,15 @@ done:
 }
 
 /// A fit that is stopped leaves what it has done, and a summary that says so.
-static enum status write_interrupted(struct run *run) {
+static enum status write_interrupted(struct run *run, const struct engine_door *door) {
     TRY(save(run));
     const struct fit_result result = result_so_far(run, STATUS_INTERRUPTED);
     if (run->standing.iterations > 0) {
         TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
         mf_run_folder_draw(&run->folder);
     }
+    if (mf_fit_engine_waits(&run->fit, door))
+        return STATUS_INTERRUPTED;
     return mf_status_fail(
         STATUS_INTERRUPTED,
         "interrupted after %llu iterations; what there is, is in %s; continue with --resume",
@@ -423,7 +425,7 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     if (status == STATUS_OK)
         status = verify_and_write(run);
     if (status == STATUS_INTERRUPTED)
-        status = write_interrupted(run);
+        status = write_interrupted(run, options->engine);
 done:
     if (run) {
         if (run->created)

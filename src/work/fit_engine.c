@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/fit_engine.h"
 
+#include "base/interrupt.h"
+
 enum status mf_fit_engine_open(struct fit_file *fit, const struct engine_door *door,
-                               const char *folder) {
+                               const char *folder, bool resume) {
     const bool named = door && door->command;
     if (fit->engine.kind == ENGINE_NONE)
         return named ? mf_status_fail(STATUS_BAD_INPUT,
@@ -13,7 +15,16 @@ enum status mf_fit_engine_open(struct fit_file *fit, const struct engine_door *d
         return mf_status_fail(STATUS_BAD_INPUT,
                               "engine: its command stands on the command line, as a run file "
                               "starts nothing: mesofit fit ... --engine \"COMMAND\"");
-    return door->open(door->command, fit, folder, &fit->problem.engine);
+    return door->open(door->command, fit, folder, resume, &fit->problem.engine);
+}
+
+bool mf_fit_engine_waits(const struct fit_file *fit, const struct engine_door *door) {
+    char text[STATUS_MESSAGE_SIZE / 2];
+    if (fit->problem.engine == NULL || !door->waits(fit->problem.engine, text, sizeof text))
+        return false;
+    mf_interrupt_plan();
+    (void)mf_status_fail(STATUS_INTERRUPTED, "%s", text);
+    return true;
 }
 
 void mf_fit_engine_close(struct fit_file *fit, const struct engine_door *door) {

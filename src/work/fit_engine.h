@@ -9,5 +9,9 @@
 /// @param[in]  folder  of the fit
 /// Fails: BAD_INPUT if file and command line do not go together; as engine_door.open.
 enum status mf_fit_engine_open(struct fit_file *fit, const struct engine_door *door,
-                               const char *folder) MUST_USE;
+                               const char *folder, bool resume) MUST_USE;
+
+/// Whether a fit that was stopped waits for somebody who runs its pieces: the message says so then,
+/// and that is no failure.
+bool mf_fit_engine_waits(const struct fit_file *fit, const struct engine_door *door);
 void mf_fit_engine_close(struct fit_file *fit, const struct engine_door *door);

@@ -137,6 +137,32 @@ static void test_a_fit_whose_engine_died_goes_on_with_the_same_bits(void **state
     results_assert_same("whole", "out", same);
 }
 
+/// Whether the fit waits for samples; then they are made, as somebody else would.
+static bool sample_what_is_listed(void) {
+    struct stat found;
+    if (stat("out/engine/waiting", &found) != 0 || found.st_size == 0)
+        return false;
+    assert_int_equal(system("while read folder; do sh \"$folder/run.sh\" " COMMAND
+                            " >/dev/null 2>&1 || exit 1; done <out/engine/waiting"),
+                     0);
+    return true;
+}
+
+static void test_samples_made_later_give_the_same_bits(void **state) {
+    static const char *const same[] = {"potential.tsv", "rdf.tsv", NULL};
+    write_coarse(*state, "coarse.json");
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "whole", "--engine", COMMAND);
+    assert_in_range(result.code, 0, 1);
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later");
+    run_program_assert_code(&result, 0);
+    assert_non_null(strstr(result.err, "waits for samples"));
+    int rounds = 0;
+    for (; sample_what_is_listed(); rounds++)
+        RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later", "--resume");
+    assert_in_range(rounds, 3, 20); // two iterations and the verification
+    results_assert_same("whole", "out", same);
+}
+
 static void test_what_is_wrong_with_an_engine_is_said(void **state) {
     static const struct {
         const char *trouble, *word;
@@ -198,6 +224,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_a_known_potential_is_found, enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_a_fit_whose_engine_died_goes_on_with_the_same_bits,
                                         enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_samples_made_later_give_the_same_bits, enter,
+                                        small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_what_is_wrong_with_an_engine_is_said, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_wrong_settings_are_refused, enter, small_inputs_leave),

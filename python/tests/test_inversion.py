@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An inversion that is told its samples: an ideal gas, whose g(r) is 1, needs no potential."""
+
+import numpy as np
+import pytest
+
+import mesofit
+
+BEADS = 200
+
+
+def run_file(folder):
+    r = np.arange(0.05, 1.0, 0.1)
+    np.savetxt(folder / "rdf.tsv", np.stack([r, np.ones_like(r), 0.02 * np.ones_like(r)], axis=1))
+    return {"target": {"rdf": {"file": str(folder / "rdf.tsv")}},
+            "scene": {"box": [4, 4, 4], "temperature": 1, "particles": {"count": BEADS}},
+            "method": {"name": "auto", "replicas": 2, "samples": 40, "precision": 0.02},
+            "verification": {"replicas": 2, "samples": 20}}
+
+
+def gas(piece):
+    """Samples of the ideal gas."""
+    random = np.random.default_rng(piece.asked["seed"])
+    return random.random((piece.asked["frames"], BEADS, 3)) * piece.asked["box"]
+
+
+def tell_all(inversion):
+    for piece in inversion.pieces:
+        assert set(piece.potentials) == {""}
+        table = piece.potentials[""]
+        assert table.columns == ("r", "phi", "force") and len(table) == 2000
+        piece.tell(gas(piece))
+        assert piece.told
+
+
+def test_an_ideal_gas_has_no_potential(tmp_path):
+    inversion = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out")
+    rounds = 0
+    while not inversion.ended:
+        tell_all(inversion)
+        inversion.go_on()
+        rounds += 1
+        assert rounds < 20
+    assert inversion.result.converged
+    assert np.nanmax(np.abs(inversion.result.potential["phi"])) < 0.3
+
+
+def test_it_goes_on_in_another_object(tmp_path):
+    first = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out")
+    tell_all(first)
+    second = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out", resume=True)
+    assert [piece.asked["piece"] for piece in second.pieces] != [1, 1] or second.ended
+
+
+def test_wrong_samples_are_refused(tmp_path):
+    inversion = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out")
+    piece = inversion.pieces[0]
+    with pytest.raises(mesofit.InputError, match="expected .* frames"):
+        piece.tell(np.zeros((3, BEADS, 3)))
+    with pytest.raises(mesofit.InputError, match="expected 200 beads, found 7"):
+        piece.tell(np.zeros((piece.asked["frames"], 7, 3)))
+    with pytest.raises(mesofit.InputError, match="one of each frame"):
+        piece.tell(gas(piece), pressure=1.0)
+    assert not piece.told
