@@ -65,8 +65,8 @@ struct sampling_engine {
     int64_t steps;     ///< time steps of a sweep
     int at_once;       ///< 0: as many as threads
     bool whole_energy; ///< its energies are of pairs and molecules; else of the pairs alone
-    /// Of an engine that somebody else runs: prepare a piece, before any of those that are asked for
-    /// side by side is waited for. NULL: `begin` does so.
+    /// Of an engine that somebody else runs: prepare a piece, before any of those that are asked
+    /// for side by side is waited for. NULL: `begin` does so.
     enum status (*announce)(void *context, const struct engine_piece *piece);
     /// Make the frames of a piece. Fails: IO with what the program said; INTERRUPTED, also while
     /// it waits for who runs it; BAD_INPUT for
