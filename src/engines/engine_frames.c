@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 struct engine_frames {
     char file[OUTPUT_PATH_SIZE];
@@ -114,6 +115,11 @@ static enum status fill(const struct engine_run *run, const struct engine_piece 
     frames->wanted = piece->frames;
     frames->skip = run->tongue->skip;
     mf_engine_path(folder, run->tongue->frames(run), frames->file);
+    if (access(frames->file, F_OK) != 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: the command has left no such file; all it "
+                              "said is in engine.log beside it",
+                              frames->file);
     TRY_ARRAY(frames->atom, frames->beads);
     TRY(open_trajectory(run, frames));
     TRY(find_atoms(run, frames));

@@ -294,11 +294,12 @@ static void list_words(const struct engine_run *run, const struct engine_piece *
     memcpy(words, all, sizeof all);
 }
 
-/// "ERROR: …", the last one.
+/// "ERROR: …" or "ERROR on proc 0: …", the last one; MPI has errors of its own after it.
 static const char *find_reason(char *text) {
     char *found = NULL;
     for (char *at = strstr(text, "ERROR"); at; at = strstr(at + 1, "ERROR"))
-        found = at;
+        if (at[strlen("ERROR")] == ':' || at[strlen("ERROR")] == ' ')
+            found = at;
     if (found)
         found[strcspn(found, "\n")] = '\0';
     return found;
