@@ -5,6 +5,7 @@
 #include "defaults/methods.h"
 #include "dynamics/hybrid_step.h"
 #include "inversion/inversion.h"
+#include "problem/evaluate.h"
 
 #include <math.h>
 #include <string.h>
@@ -199,6 +200,8 @@ static void give_to_method(struct fit_choice *c, const char *key, double value) 
 }
 
 /// How candidates for ω are simulated: from the last configuration, as long as their targets look.
+/// They are not equilibrated for long, since the first of them has settled before
+/// (mf_evaluate_settle).
 static void choose_rounds(struct fit_choice *c) {
     static const double equilibration = 0.7, apart = 0.1, windows = 1.5, min = 40;
     enum target_kind longest;
@@ -206,12 +209,19 @@ static void choose_rounds(struct fit_choice *c) {
         (double)mf_measurement_window(&c->fit->problem.compared, c->time_step, &longest);
     const double free = round(apart * c->crossing / c->time_step);
     const double every = fmax(1, fmin(free, window > 0 ? floor(windows * window / min) : free));
-    give_to_method(c, "equilibration", fmax(50, ceil(equilibration * c->crossing / c->time_step)));
+    const double begin = fmax(50, ceil(equilibration * c->crossing / c->time_step));
+    give_to_method(c, "equilibration", begin);
     give_to_method(c, "every", every);
     give_to_method(c, "samples", fmax(min, ceil(windows * window / every)));
     give_to_method(c, "precision", 0.1);
     give_to_method(c, "temperature_tolerance", 0.3);
     give_to_method(c, "warm_start", true);
+    if (!c->finds[UNKNOWN_POTENTIAL] || c->fit->method == &mf_successive)
+        mf_fit_choice_note(
+            c,
+            "candidates: equilibrated for %.0f steps, from a configuration that is simulated for "
+            "%.0f steps at least before, until neither its energy nor its temperature drifts",
+            begin, EVALUATE_SETTLE * begin);
 }
 
 enum status mf_fit_defaults_method(struct fit_choice *c) {

@@ -36,7 +36,8 @@ const struct field mf_population_fields[] = {
 
 const struct field mf_population_round_fields[] = {
     {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = no_or_yes, .initial = 0, .unit = "",
-     .help = "start from the end of the last round's best simulation"},
+     .help = "start from the end of the last round's best simulation, and without curves of a "
+             "potential at first from a configuration that has settled"},
     FIELD_END,
 };
 
@@ -116,8 +117,7 @@ void mf_population_reset_survey(struct population *population) {
     population->survey = (struct population_survey){.min = INFINITY};
 }
 
-/// Columns of positions, one a dimension.
-static void split(const struct population *population, double *position, double *column[3]) {
+void mf_population_split(const struct population *population, double *position, double *column[3]) {
     const struct simulation_setup *scene = &population->parametrisation->unknowns.problem->scene;
     for (int d = 0; d < scene->box.dimensions; d++)
         column[d] = position + (size_t)d * (size_t)scene->placement.count;
@@ -128,8 +128,8 @@ enum status mf_population_simulate(const struct population *population, const do
                                    struct evaluate_result *result) {
     struct unknowns_laws laws;
     double *begin_column[3] = {NULL}, *end_column[3] = {NULL};
-    split(population, population->position, begin_column);
-    split(population, task->end, end_column);
+    mf_population_split(population, population->position, begin_column);
+    mf_population_split(population, task->end, end_column);
     enum status status = mf_parametrisation_laws(population->parametrisation, variables, &laws);
     const struct evaluate_candidate candidate = {
         .potential = laws.table[UNKNOWN_POTENTIAL],
@@ -306,9 +306,7 @@ static size_t list_features(void *context, size_t task, struct memory_span *span
     return 1;
 }
 
-/// Threads for the simulation of a candidate alone. Particles too few to share are done before the
-/// threads have met.
-static int threads_inside(const struct inverse_problem *problem) {
+int mf_population_threads_inside(const struct inverse_problem *problem) {
     enum { PARTICLES_PER_THREAD = 1000 };
     const int64_t max = problem->scene.placement.count / PARTICLES_PER_THREAD;
     if (max < 1)
@@ -349,8 +347,9 @@ enum status mf_population_measure(struct population *population,
     if (round->count > POPULATION_MAX)
         return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
                               round->count, POPULATION_MAX);
+    TRY(mf_population_settle(population, round));
     if (round->count == 1)
-        work.threads = threads_inside(problem);
+        work.threads = mf_population_threads_inside(problem);
     memcpy(population->first, round->variables,
            population->parametrisation->variables * sizeof *round->variables);
     for (size_t k = 0; k < round->count; k++)

@@ -83,6 +83,20 @@ enum status mf_population_measure(struct population *population,
 /// Forget the errors, and begin the next round's simulations where the best of this one ended.
 void mf_population_next_round(struct population *population);
 
+/// With a warm start, and before the first round of candidates that have one potential: let the
+/// first of them that can settle where all simulations are to begin. Where none can, and otherwise,
+/// they begin as the scene says. Fails: INTERRUPTED, NO_MEMORY, BAD_INPUT.
+/// (population_settle.c)
+enum status mf_population_settle(struct population *population,
+                                 const struct optimiser_round *round) MUST_USE;
+
+/// Columns of positions, one a dimension.
+void mf_population_split(const struct population *population, double *position, double *column[3]);
+
+/// Threads for the simulation of a candidate alone. Particles too few to share are done before the
+/// threads have met.
+int mf_population_threads_inside(const struct inverse_problem *problem);
+
 /// Numbers of a configuration: dimensions times particles.
 size_t mf_population_coordinates(const struct population *population);
 

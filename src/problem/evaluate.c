@@ -2,8 +2,12 @@
 #include "problem/evaluate.h"
 
 #include "base/clock.h"
+#include "base/rng.h"
 #include "base/spent.h"
+#include "observe/equilibration.h"
+#include "observe/observable.h"
 #include "observe/rdf_force.h"
+#include "observe/thermodynamics.h"
 
 #include <math.h>
 
@@ -158,4 +162,68 @@ done:
     mf_measurement_clear(&measurement);
     mf_measurement_values_clear(&own);
     return status;
+}
+
+// One configuration for all candidates ------------------------------------------------------------
+
+/// Samples of a window, equilibrations of a candidate in the first one, and windows, of which each
+/// is twice as long as the last, and the first of all is the lattice's.
+enum { SETTLE_SAMPLES = 64, SETTLE_EQUILIBRATIONS = EVALUATE_SETTLE / 3, SETTLE_WINDOWS = 6 };
+
+/// Whether energy or temperature go on changing.
+static bool still_drifts(const struct measurement *measurement) {
+    static const enum thermodynamics_quantity looked_at[] = {THERMODYNAMICS_POTENTIAL_ENERGY,
+                                                             THERMODYNAMICS_TEMPERATURE};
+    const struct thermodynamics *found =
+        mf_measurement_state(measurement, &mf_thermodynamics_observable);
+    bool drifts = false;
+    for (int k = 0; k < 2; k++) {
+        const struct equilibration_drift drift =
+            mf_equilibration_drift(mf_thermodynamics_series(found, looked_at[k]), SETTLE_SAMPLES);
+        drifts = drifts || equilibration_drifts(&drift, 2);
+    }
+    return drifts;
+}
+
+/// A window with new velocities, so that what the positions gave them is gone.
+static enum status run_window(const struct inverse_problem *problem,
+                              const struct measurement_setup *setup, double *const *position,
+                              bool *drifts, uint64_t *steps) {
+    enum status status = STATUS_OK;
+    struct measurement measurement = {0};
+    CHECK(mf_measurement_init(&measurement, problem, setup));
+    CHECK(mf_measure_sample(&measurement.simulation, &setup->plan, measurement.use, NULL));
+    if (measurement.simulation.setup.interactions == 0 && has_collapsed(&measurement.simulation))
+        CHECK(mf_status_fail(STATUS_UNSTABLE, "the particles have collapsed into a drop"));
+    *drifts = still_drifts(&measurement);
+    copy_positions(&measurement.simulation.particles, position);
+done:
+    *steps += measurement.simulation.step;
+    mf_measurement_clear(&measurement);
+    return status;
+}
+
+enum status mf_evaluate_settle(const struct inverse_problem *problem,
+                               const struct evaluate_candidate *candidate, int64_t equilibration,
+                               double *const *position, uint64_t *steps) {
+    const double begun = clock_thread_seconds();
+    struct targets none = problem->targets;
+    int64_t every = (SETTLE_EQUILIBRATIONS * equilibration + SETTLE_SAMPLES - 1) / SETTLE_SAMPLES;
+    bool drifts = true;
+    for (int kind = 0; kind < TARGETS; kind++)
+        none.target[kind].count = 0;
+    for (int window = 0; (drifts || window < 2) && window < SETTLE_WINDOWS; window++, every *= 2) {
+        const struct measurement_setup setup = {
+            .targets = &none,
+            .potential = candidate->potential,
+            .omega = candidate->omega,
+            .position = window > 0 ? (const double *const *)position : candidate->position,
+            .plan = {.samples = SETTLE_SAMPLES, .every = every},
+            .thermodynamics = true,
+            .threads = candidate->threads,
+            .seed = mf_rng_child_seed(candidate->seed, RNG_EVALUATION, (uint32_t)window, 0)};
+        TRY(run_window(problem, &setup, position, &drifts, steps));
+    }
+    account(SPENT_EQUILIBRATION, begun);
+    return STATUS_OK;
 }

@@ -57,3 +57,18 @@ enum status mf_evaluate(const struct inverse_problem *problem,
                         const struct evaluate_parameters *parameters, double *features,
                         struct observed *observed, double *const *position,
                         struct evaluate_result *result) MUST_USE;
+
+/// Equilibrations of a candidate that mf_evaluate_settle takes at least.
+enum { EVALUATE_SETTLE = 24 };
+
+/// A configuration from which all candidates may begin: the scene's own is a lattice, whose energy
+/// heats the beads, and makes them move faster, for far longer than a candidate is equilibrated.
+/// In windows, each twice as long as the last, until neither energy nor temperature drift
+/// (observe/equilibration.h), two at least and six at most.
+/// @param[in] equilibration  of a candidate [steps]: the first window is eight times as long
+/// @param[out] position  shape [dimensions][count] by particle number
+/// @param[in,out] steps  those taken are added
+/// Fails: UNSTABLE as mf_evaluate, INTERRUPTED, NO_MEMORY. Tested: test_evaluate.
+enum status mf_evaluate_settle(const struct inverse_problem *problem,
+                               const struct evaluate_candidate *candidate, int64_t equilibration,
+                               double *const *position, uint64_t *steps) MUST_USE;
