@@ -254,7 +254,7 @@ static enum status make(struct job *job, const char *folder) {
     job->export.folder = folder;
     job->export.units =
         mf_export_units(engine->system, &job->run->fit->scene.units, engine->physical);
-    job->export.time_step = mf_export_safe_step(&job->model);
+    job->export.time_step = mf_export_safe_step(&job->model, &job->export.why_step);
     TRY(mf_export_grids_make(&job->export.grids, engine->interpolation, &job->model, false, 0));
     TRY(mf_export_bonded_make(&job->export.bonded, &job->model, engine->has_law));
     TRY(engine->check(&job->export));

@@ -74,7 +74,8 @@ static void print_friction(const struct export_job *job, const char *prefix, FIL
         fprintf(stream, "none: the tables are of the potential alone%s\n",
                 lost ? "; the friction of the result is left out" : "");
     else if (job->runs == EXPORT_OWN_FRICTION)
-        fprintf(stream, "that of the result: %s, with a misfit of %.2g\n",
+        fprintf(stream, "%s: %s, with a misfit of %.2g\n",
+                lost ? "that of the result" : "no result, but chosen to hold the temperature",
                 mf_export_dynamics_friction(job), job->worst_misfit);
     else if (job->runs == EXPORT_PROJECTED)
         fprintf(stream, "the nearest that %s has: %s, with a misfit of %.2g\n", job->engine->title,

@@ -184,10 +184,11 @@ static void print_readme(const struct export_job *job, FILE *stream) {
             job->engine->commands_of ? job->engine->commands_of(job) : job->engine->commands);
     mf_export_dynamics_print(job, "", stream);
     fprintf(stream, "\n");
-    fprintf(stream, "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g %s.\n\n",
+    fprintf(stream,
+            "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g %s: %s.\n\n",
             units->length_name, units->time_name, units->energy_name, units->temperature_name,
             units->pressure_name, units->time * job->time_step, units->time_name,
-            units->time * model->setup.time_step, units->time_name);
+            units->time * model->setup.time_step, units->time_name, job->why_step);
     fprintf(
         stream,
         "Tables of %zu rows, read by %s as it reads them (%s), are within %.2g k_B T of the\n"
@@ -238,6 +239,10 @@ static void print_result(const struct export_job *job, struct progress *to) {
                       "from r = %.4g %s on",
                       job->grids.grid[0][0].rows, job->engine->title, error->phi, error->force,
                       job->units.length * error->from, job->units.length_name);
+    mf_progress_print(to, "time step %.6g %s; mesofit's own was %.6g %s: %s",
+                      job->units.time * job->time_step, job->units.time_name,
+                      job->units.time * job->model->setup.time_step, job->units.time_name,
+                      job->why_step);
     if (job->model->remembers)
         mf_progress_print(to, "mesofit: warning: %.160s: %s", job->model->folder, left_out);
     mf_export_dynamics_tell(job, to);
@@ -272,12 +277,16 @@ static double step_of_bonds(const struct export_model *model) {
                     mf_hybrid_step_fastest(model->molecules, model->setup.temperature));
 }
 
-double mf_export_safe_step(const struct export_model *model) {
+double mf_export_safe_step(const struct export_model *model, const char **why) {
     const struct export_number *found = &model->configurational;
     const double wrong = (fabs(found->value - model->setup.temperature) - 2 * found->error) /
                          model->setup.temperature; // NaN: not known
-    const double step = model->setup.time_step;
-    return fmin(wrong > allowed ? step * sqrt(allowed / wrong) : step, step_of_bonds(model));
+    const double step = model->setup.time_step, of_bonds = step_of_bonds(model);
+    const double right = wrong > allowed ? step * sqrt(allowed / wrong) : step;
+    *why = of_bonds < right  ? "shorter for the stiffest bonds, angles and dihedrals"
+           : wrong > allowed ? "shorter, as its configurational temperature is off"
+                             : "the same, as no temperature shows that it is long";
+    return fmin(right, of_bonds);
 }
 
 static enum status run(struct export_job *job, const struct export_request *request) {
@@ -286,7 +295,7 @@ static enum status run(struct export_job *job, const struct export_request *requ
     struct tracked_files own = {.open = false};
     TRY(check(job, request->bands));
     job->units = mf_export_units(job->engine->system, &model->scene.units, job->engine->physical);
-    job->time_step = mf_export_safe_step(model);
+    job->time_step = mf_export_safe_step(model, &job->why_step);
     TRY(mf_export_grids_make(&job->grids, job->engine->interpolation, model, request->bands,
                              job->engine->one_cutoff ? model->setup.potential->cutoff : 0));
     CHECK(mf_export_bonded_make(&job->bonded, model, job->engine->has_law));

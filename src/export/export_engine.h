@@ -33,6 +33,7 @@ struct export_job {
     struct export_projection projection;              ///< what it costs,
     char unmeasured[256];                             ///< or why it was not; ""
     double time_step;                                 ///< for this engine [τ]
+    const char *why_step;                             ///< is as long
     struct export_bonded bonded;                      ///< tables of laws that it has not
     struct export_densities densities;                ///< tables of "many_body"
     int exclude; ///< of all molecules, for engines that have one number for all
@@ -133,7 +134,8 @@ double mf_export_slowing(const struct export_job *job);
 /// The step of the result, shortened if its configurational temperature, which is off as Δt²,
 /// shows that it is long: by what is beyond two errors, as the rest may be chance; and as bonds ask
 /// for [τ].
-double mf_export_safe_step(const struct export_model *model);
+/// @param[out] why  it is as long, for the README
+double mf_export_safe_step(const struct export_model *model, const char **why);
 
 /// A coordinate in the box, [0, length).
 double mf_export_place(const struct export_model *model, int axis, size_t particle);

@@ -24,14 +24,17 @@ static void print(const struct export_job *job, FILE *stream) {
             "            trans_weight_function=1, trans_gamma=0, trans_r_cut=0)\n"
             "    system.thermostat.set_dpd(kT=kT, seed=1)\n"
             "else:\n"
-            "    system.thermostat.set_langevin(kT=kT, gamma=masses[0] / slowing, seed=1)\n\n"
-            "for block in range(10):\n"
-            "    system.integrator.run(steps // 10)\n"
-            "    energy = system.analysis.energy()\n"
-            "    print(system.time, 2 * energy[\"kinetic\"] / (3 * len(start)),\n"
-            "          system.analysis.pressure()[\"total\"], energy[\"non_bonded\"])\n"
-            "numpy.savetxt(\"end.txt\", numpy.column_stack(\n"
-            "    (types_of, system.part.all().pos, system.part.all().v)))\n");
+            "    system.thermostat.set_langevin(kT=kT, gamma=masses[0] / slowing, seed=1)\n\n");
+    mf_export_script_columns(job, true, stream);
+    fprintf(stream, "for block in range(10):\n"
+                    "    system.integrator.run(steps // 10)\n"
+                    "    energy = system.analysis.energy()\n"
+                    "    print(round(system.time / time_step),\n"
+                    "          2 * energy[\"kinetic\"] / (3 * len(start)) * temperature / kT,\n"
+                    "          system.analysis.pressure()[\"total\"] * pressure_unit, "
+                    "energy[\"non_bonded\"])\n"
+                    "numpy.savetxt(\"end.txt\", numpy.column_stack(\n"
+                    "    (types_of, system.part.all().pos, system.part.all().v)))\n");
 }
 
 static enum status write(const struct export_job *job) {

@@ -35,7 +35,9 @@ static void print(const struct export_job *job, FILE *stream) {
             "time_step)\n"
             "context = openmm.Context(system, integrator)\n"
             "context.setPositions(start[:, 1:4].tolist())\n"
-            "context.setVelocities(start[:, 4:7].tolist())\n"
+            "context.setVelocities(start[:, 4:7].tolist())\n");
+    mf_export_script_columns(job, false, stream);
+    fprintf(stream,
             "for block in range(10):\n"
             "    integrator.step(steps // 10)\n"
             "    state = context.getState(getEnergy=True)\n"

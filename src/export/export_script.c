@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "export/export_script.h"
 
+#include <math.h>
+
 /// What a printer of one file is to print.
 struct printed {
     const struct export_job *job;
@@ -92,9 +94,13 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
             module);
     fprintf(stream, "box = [%.12g, %.12g, %.12g]\n", length[0] * units->length,
             length[1] * units->length, length[2] * units->length);
-    fprintf(stream, "kT = %.12g\ntemperature = %.12g # K, or T_0\ntime_step = %.9g\n",
-            model->setup.temperature * units->energy, model->setup.temperature * units->temperature,
-            job->time_step * units->time);
+    fprintf(stream, "kT = %.12g # %s\ntemperature = %.12g # %s\n",
+            model->setup.temperature * units->energy, units->energy_name,
+            model->setup.temperature * units->temperature, units->temperature_name);
+    fprintf(stream, "pressure_unit = %.9g # %s in a %s/%s^%d\ntime_step = %.9g # %s\n",
+            units->pressure * pow(units->length, model->setup.box.dimensions) / units->energy,
+            units->pressure_name, units->energy_name, units->length_name,
+            model->setup.box.dimensions, job->time_step * units->time, units->time_name);
     fprintf(stream, "types = [");
     for (int type = 0; type < model->types; type++)
         fprintf(stream, "%s\"%s\"", type ? ", " : "", model->name[type]);
@@ -109,9 +115,19 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
                     "start = numpy.loadtxt(\"start.txt\")\n\n");
 }
 
+void mf_export_script_columns(const struct export_job *job, bool pressure, FILE *stream) {
+    const struct export_units *units = &job->units;
+    fprintf(stream, "print(\"# step, temperature [%s]", units->temperature_name);
+    if (pressure)
+        fprintf(stream, ", pressure [%s]", units->pressure_name);
+    fprintf(stream, ", potential energy [%s]\")\n", units->energy_name);
+}
+
 void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream) {
     if (mf_export_is_linear(job))
-        fprintf(stream, "Friction and noise: %s, that of the result%s.\n", dpd,
+        fprintf(stream, "Friction and noise: %s, %s%s.\n", dpd,
+                job->model->thermostat ? "chosen to hold the temperature, and no result"
+                                       : "that of the result",
                 job->projected ? " as the power law above" : "");
     else if (job->model->setup.omega)
         fprintf(stream,

@@ -10,10 +10,15 @@
 /// @param[in] shift  what is taken off positions, as a share of the box
 enum status mf_export_script_files(const struct export_job *job, double shift) MUST_USE;
 
-/// Print the numbers that all scripts begin with: `box`, `kT`, `time_step`, `types`, `masses`,
+/// Print the numbers that all scripts begin with: `box`, `kT`, `temperature` and `pressure_unit`,
+/// a pressure of the README over one of the script's units, `time_step`, `types`, `masses`,
 /// `pairs` (types a and b, file, cutoff, and γ and r_c of the friction), `linear`, whether the
 /// friction is A (1 − r/r_c), and `slowing`, the time of a bath instead.
 void mf_export_script_head(const struct export_job *job, const char *module, FILE *stream);
+
+/// Print what a line of the script's output has: the temperature and the pressure in the units that
+/// the README has, too, and the potential energy of all beads.
+void mf_export_script_columns(const struct export_job *job, bool pressure, FILE *stream);
 
 /// What the README says of the thermostat of such a script.
 void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream);

@@ -161,6 +161,22 @@ static void test_result_in_nm_and_ps_is_exported_alike(void **state) {
     const double gamma = 4.49991 * thermal / 4.184 * picoseconds * 1e3 / 49;
     assert_true(fabs(strtod(found + strlen("pair_coeff 1 1 dpd/tstat "), NULL) / gamma - 1) < 1e-4);
     free(input);
+    // Of a script's pressures, kJ/mol/nm³, and temperatures, kJ/mol, come those of the README.
+    static const char *const scripts[] = {"hoomd", "espresso"};
+    for (int k = 0; k < 2; k++) {
+        char path[32];
+        run_export(scripts[k], scripts[k]);
+        snprintf(path, sizeof path, "%s/run.py", scripts[k]);
+        input = temporary_folder_read(path);
+        assert_contains(input, "print(\"# step, temperature [K], pressure [bar], potential energy");
+        found = strstr(input, "pressure_unit = ");
+        assert_non_null(found);
+        assert_true(fabs(strtod(found + strlen("pressure_unit = "), NULL) - 16.6053907) < 1e-6);
+        assert_contains(input, k == 0 ? "state.pressure * pressure_unit" : "] * pressure_unit");
+        assert_contains(input, " * temperature / kT");
+        assert_int_equal(strstr(input, "always_compute_pressure = True") == NULL, k);
+        free(input);
+    }
 }
 
 /// Three columns r, Φ, F; both ends are among the rows.

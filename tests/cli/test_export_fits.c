@@ -120,7 +120,7 @@ static void test_memory_that_was_found_is_left_out_and_told(void **state) {
     for (int k = 0; k < 2; k++) {
         fit_and_export(*state, unknowns[k], scenes[k]);
         char *text = temporary_folder_read("lammps/README");
-        assert_contains(text, "; mesofit's own was 0.02 tau.");
+        assert_contains(text, "; mesofit's own was 0.02 tau: the same, as");
         assert_contains(text, "memory or across pairs is left out");
         free(text);
     }
@@ -248,6 +248,14 @@ static void test_friction_that_was_chosen_is_not_left_out(void **state) {
         assert_int_equal(strstr(result.err, "omega(r), conserved momentum and flow are left out") &&
                              strstr(result.err, "simulating"),
                          own);
+        RUN_PROGRAM(&result, "export", "fit", "--engine", "hoomd", "-o", "hoomd", "--force");
+        run_program_assert_code(&result, 0);
+        char *readme = temporary_folder_read("hoomd/README");
+        assert_contains(readme, own ? "friction   that of the result: hoomd.md.pair.DPD"
+                                    : "friction   no result, but chosen to hold the temperature");
+        assert_contains(readme, own ? "with A = 0, that of the result"
+                                    : "with A = 0, chosen to hold the temperature, and no result");
+        free(readme);
     }
 }
 
