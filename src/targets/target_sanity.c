@@ -419,8 +419,7 @@ static void warn_of_density(const struct view *view,
         mf_target_sanity_warn(
             listener,
             "mesofit: warning: target.%s: a dilute gas: the density of the scene is %s, and the "
-            "beads "
-            "are %.3g %s wide",
+            "beads are %.3g %s wide",
             view->name, density, core * mf_units_factor(units, "lambda"),
             mf_units_name(units, "lambda", unit));
 }
@@ -428,21 +427,23 @@ static void warn_of_density(const struct view *view,
 enum status mf_target_sanity_report(const struct target_files *files, const struct scene *scene,
                                     const struct target_sanity_listener *listener) {
     struct view view;
+    char line[SCENE_LINE_SIZE];
     for (size_t n = 0; n < MAX_VIEWS; n++) {
         if (!find_view(files, scene, n, &view))
             continue;
         report_view(&view, listener);
         report_origin(&view, listener);
+        TRY(mf_target_sanity_report_errors(view.target, view.name, listener));
         warn_of_state(&view, listener);
         if (scene_has_molecules(&scene->molecules))
             continue;
         TRY(warn_of_normalisation(&view, listener));
         warn_of_density(&view, listener);
+        mf_target_sanity_report_end(view.target, view.name, &files->normalisation, scene, listener);
     }
     mf_target_sanity_report_groups(files, scene, listener);
     mf_target_sanity_report_pressure(files, scene, listener);
     mf_target_sanity_report_normalisation(&files->normalisation, listener);
-    char line[SCENE_LINE_SIZE];
     if (mf_scene_is_hot(scene, line))
         mf_target_sanity_warn(listener, "mesofit: warning: scene.%s", line);
     return STATUS_OK;

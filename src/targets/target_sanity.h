@@ -64,6 +64,22 @@ void mf_target_sanity_report_reading(const struct target_rdf *target, const char
 void mf_target_sanity_report_normalisation(const struct normalisation *n,
                                            const struct target_sanity_listener *listener);
 
+/// Warn of a g(r) most of whose errors are larger than a fifth of it and three times what its rows
+/// scatter by, as errors in per cent are; and of all other curves and distributions most of whose
+/// errors are larger than half of them. Fails: NO_MEMORY. Tested: cli/test_target_sanity.
+enum status mf_target_sanity_report_errors(const struct target_rdf *target, const char *name,
+                                           const struct target_sanity_listener *listener) MUST_USE;
+void mf_target_sanity_report_other_errors(const struct target_files *files,
+                                          const struct target_sanity_listener *listener);
+
+/// Warn of a g(r) of single beads whose mean over the last tenth of its range is more than 3 % away
+/// from 1, by four of its errors and twice the scatter of the last quarter, over the normalisation
+/// that was given or found. Tested: cli/test_target_sanity.
+void mf_target_sanity_report_end(const struct target_rdf *target, const char *name,
+                                 const struct normalisation *normalisation,
+                                 const struct scene *scene,
+                                 const struct target_sanity_listener *listener);
+
 /// Say a line.
 void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

@@ -160,6 +160,7 @@ void mf_target_sanity_report_groups(const struct target_files *files, const stru
     for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t g = 0; g < target_files_groups(files, order)->groups; g++)
             report_group(target_files_groups(files, order), g, scene, listener);
+    mf_target_sanity_report_other_errors(files, listener);
     warn_of_lines(files, listener);
     if (scene_has_molecules(&scene->molecules))
         warn_of_tails(files, scene, listener);

@@ -196,6 +196,55 @@ static void test_fit_warns_of_a_table_that_begins_within_its_core(void **state) 
     free(whole);
 }
 
+/// The water with its g times a factor, and errors of so much, or those of the file times it if
+/// that is 0.
+static void write_water(struct temporary_folder *folder, double factor, double error) {
+    char *const text = temporary_folder_read("water.txt"), *rest;
+    static char changed[16384];
+    size_t length = (size_t)snprintf(changed, sizeof changed, "# r[nm] g[1] g_error[1]\n");
+    for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest)) {
+        double r, g, own;
+        if (sscanf(line, "%*f %lf %*f %*f %lf %lf", &r, &g, &own) == 3)
+            length += (size_t)snprintf(changed + length, sizeof changed - length, "%g %g %g\n", r,
+                                       factor * g, error > 0 ? error : factor * own);
+    }
+    temporary_folder_write(folder, "changed.tsv", changed, length);
+    free(text);
+}
+
+static const char changed_run[] =
+    "{\"units\": \"nm-ps\", \"target\": {\"rdf\": {\"file\": \"changed.tsv\"}},\n"
+    "\"scene\": {\"density\": 32.57, \"temperature\": 298, \"particles\": {\"mass\": "
+    "18.015}}}\n";
+
+/// Any potential has such a g(r), and any fit of it is a success.
+static void test_fit_warns_of_errors_in_per_cent(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", changed_run, NULL, NULL);
+    for (int k = 0; k < 3; k++) {
+        write_water(*state, 1, 0.75 * k);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.out, "warning: target.rdf: changed.tsv: its errors are ") &&
+                             strstr(result.out, "are they in per cent, or another column?"),
+                         k > 0);
+    }
+}
+
+/// A factor of 1.05 is found, and one of 1.1 is not.
+static void test_fit_warns_of_g_that_does_not_end_at_1(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", changed_run, NULL, NULL);
+    static const double factors[] = {1, 1.05, 1.1};
+    for (int k = 0; k < 3; k++) {
+        write_water(*state, factors[k], 0);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.out, "in the last tenth of its range, g is ") != NULL,
+                         k >= 2);
+    }
+}
+
 /// Gaussian-core particles have no packing that is too dense, but ten times the density asks for
 /// less than no fluctuations; hard spheres a thousandth of their close packing are a gas.
 static void test_fit_looks_at_densities_of_fluids_without_layers(void **state) {
@@ -492,6 +541,8 @@ int main(void) {
         TEST(test_fit_warns_of_targets_that_hardly_can_be),
         TEST(test_fit_warns_of_a_pressure_that_no_fluid_has),
         TEST(test_fit_warns_of_a_table_that_begins_within_its_core),
+        TEST(test_fit_warns_of_errors_in_per_cent),
+        TEST(test_fit_warns_of_g_that_does_not_end_at_1),
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_names_demixing_where_the_integrals_say_so),
