@@ -186,6 +186,18 @@ static double fit_interval(const struct fit_choice *c, double time_step) {
                         : round_down(time_step * unit) / unit;
 }
 
+/// A step that the file gives and no simulation follows.
+static void doubt_time_step(struct fit_choice *c, double usual) {
+    static const double many = 10;
+    char given[FIT_CHOICE_TEXT_SIZE], own[FIT_CHOICE_TEXT_SIZE];
+    if (c->time_step > many * usual)
+        snprintf(c->fit->choices.doubt, FIT_CHOICE_SIZE,
+                 "scene.time_step: %s is %.0f times as long as the program would choose by this "
+                 "target, %s: left out, it is chosen",
+                 mf_fit_choice_text(c, "tau", c->time_step, given), c->time_step / usual,
+                 mf_fit_choice_text(c, "tau", fit_interval(c, usual), own));
+}
+
 /// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
 /// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
 /// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
@@ -202,8 +214,10 @@ static void choose_time_step(struct fit_choice *c) {
                              : mf_fit_defaults_relaxing_step(c, curvature_of_pair, allowed);
     double *const time_step = &c->fit->scene.setup.time_step;
     c->time_step = *time_step;
-    if (c->fit->scene.given.time_step)
+    if (c->fit->scene.given.time_step) {
+        doubt_time_step(c, fmin(free, bound));
         return;
+    }
     c->time_step = fit_interval(c, fmin(free, bound));
     *time_step = mf_fit_choice_number(c, "scene", mf_scene_fields, "time_step", c->time_step);
     char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];

@@ -37,6 +37,7 @@ enum { FIT_MAX_CHOICES = 20, FIT_CHOICE_SIZE = 256 };
 struct fit_choices {
     size_t count;
     char line[FIT_MAX_CHOICES][FIT_CHOICE_SIZE];
+    char doubt[FIT_CHOICE_SIZE]; ///< of what the file says; "": none
     bool thermostat; ///< the friction is chosen, and does no more than hold the temperature
 };
 

@@ -104,13 +104,6 @@ double mf_scene_mass_density(const struct scene *scene) {
 /// Hardly a multiple of T_0, often a number of kelvins.
 static const double hottest = 50;
 
-bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]) {
-    snprintf(line, SCENE_LINE_SIZE,
-             "temperature: %g in units of k_B T_0, usually 1; give kelvins in \"units\"",
-             scene->setup.temperature);
-    return scene->setup.temperature > hottest && !mf_units_known(&scene->units);
-}
-
 /// In a reduced file masses of beads are in μ: one that is μ in u was given twice, and a bead would
 /// have its square.
 static void check_mass_given_twice(const struct scene *scene, struct json_object *object) {

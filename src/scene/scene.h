@@ -74,10 +74,6 @@ double mf_scene_mass_density(const struct scene *scene);
 /// nothing.
 const char *mf_scene_warning(const struct scene *scene);
 
-/// Whether the temperature looks like one in kelvins, without units; `line` then says so.
-enum { SCENE_LINE_SIZE = 128 };
-bool mf_scene_is_hot(const struct scene *scene, char line[SCENE_LINE_SIZE]);
-
 /// Write everything that mf_scene_read reads, defaults filled in.
 void mf_scene_write(const struct scene *scene, struct json_writer *writer);
 

@@ -427,7 +427,6 @@ static void warn_of_density(const struct view *view,
 enum status mf_target_sanity_report(const struct target_files *files, const struct scene *scene,
                                     const struct target_sanity_listener *listener) {
     struct view view;
-    char line[SCENE_LINE_SIZE];
     for (size_t n = 0; n < MAX_VIEWS; n++) {
         if (!find_view(files, scene, n, &view))
             continue;
@@ -444,7 +443,6 @@ enum status mf_target_sanity_report(const struct target_files *files, const stru
     mf_target_sanity_report_groups(files, scene, listener);
     mf_target_sanity_report_pressure(files, scene, listener);
     mf_target_sanity_report_normalisation(&files->normalisation, listener);
-    if (mf_scene_is_hot(scene, line))
-        mf_target_sanity_warn(listener, "mesofit: warning: scene.%s", line);
+    mf_target_sanity_report_scales(files, scene, listener);
     return STATUS_OK;
 }

@@ -38,10 +38,9 @@ enum status mf_target_sanity_check(const struct target_files *files, const struc
 /// 0.95 and a second maximum, of fewer than four neighbours up to that maximum, as a liquid's g has
 /// at a density ten times too low (solutes in an implicit solvent look so, too, which is why it is
 /// no fault); ρ d³ < 0.01 with d where g exceeds 1/2, the density of a dilute gas; dihedrals of
-/// beads that may stand in a line; and without units a temperature above 50, which may be in
-/// kelvins; of molecules a mean g of all beads that ends more than 3 % and three times its scatter
-/// away from 1, or that of the only pair type of one kind of molecules that does so. Fails:
-/// NO_MEMORY. Tested: test_target_sanity.
+/// beads that may stand in a line; of molecules a mean g of all beads that ends more than 3 % and
+/// three times its scatter away from 1, or that of the only pair type of one kind of molecules that
+/// does so. Fails: NO_MEMORY. Tested: test_target_sanity.
 enum status mf_target_sanity_report(const struct target_files *files, const struct scene *scene,
                                     const struct target_sanity_listener *listener) MUST_USE;
 
@@ -79,6 +78,13 @@ void mf_target_sanity_report_end(const struct target_rdf *target, const char *na
                                  const struct normalisation *normalisation,
                                  const struct scene *scene,
                                  const struct target_sanity_listener *listener);
+
+/// Warn of what mf_scene_doubts finds, and of targets beside the scene's mean distance of beads and
+/// thermal velocity: a g(r) that ends before 0.3 of the first, bonds beyond 2.5 or below 0.1 of it,
+/// a D below 10⁻³ of their product, and a VACF that
+/// does not begin at d k_B T/m within a factor of two. Tested: cli/test_doubts.
+void mf_target_sanity_report_scales(const struct target_files *files, const struct scene *scene,
+                                    const struct target_sanity_listener *listener);
 
 /// Say a line.
 void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...)

@@ -4,6 +4,7 @@
 #include "base/simd.h"
 #include "dynamics/metropolis.h"
 #include "observe/hard_theory.h"
+#include "scene/scene_doubts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -191,6 +192,17 @@ static void add_solvent_particles(struct stages *stages, const struct simulation
     if (integrator->solvent_particles)
         mf_stages_add(stages, "solvent", true, integrator->solvent_cost * own / counted(setup),
                       "%.0f particles of %s", own, integrator->name);
+}
+
+static void print_doubt(void *out, const char *line) {
+    fprintf(out, "mesofit: warning: %s\n", line);
+}
+
+void mf_explain_doubts(FILE *out, const struct scene *scene) {
+    const char *warning = mf_scene_warning(scene);
+    if (warning)
+        print_doubt(out, warning);
+    mf_scene_doubts(scene, &(struct scene_doubts_listener){print_doubt, out});
 }
 
 void mf_explain_scale(FILE *out, const struct units *units) {

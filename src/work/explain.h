@@ -3,11 +3,15 @@
 #pragma once
 
 #include "observe/observable.h"
+#include "scene/scene.h"
 
 #include <stdio.h>
 
 /// Print the scale of a scene whose file has physical units.
 void mf_explain_scale(FILE *out, const struct units *units);
+
+/// Print what a person should know of a scene before it is simulated.
+void mf_explain_doubts(FILE *out, const struct scene *scene);
 
 /// Print the stages of a step with the share of the time that each is expected to take, from costs
 /// measured on one processor: shares are good to some percent of the whole.

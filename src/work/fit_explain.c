@@ -144,6 +144,8 @@ static enum status print_targets(const struct fit_file *state) {
         printf("State \"%s\":\n", state->name);
     for (size_t k = 0; k < state->choices.count; k++)
         printf("chosen: %s\n", state->choices.line[k]);
+    if (state->choices.doubt[0])
+        printf("mesofit: warning: %s\n", state->choices.doubt);
     return mf_fit_print_state(state, &(struct target_sanity_listener){print_line, stdout});
 }
 

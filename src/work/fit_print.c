@@ -103,6 +103,8 @@ static enum status report_state(struct progress *to, const struct fit_file *fit)
         mf_progress_print(to, "mesofit: warning: scene: %s", warning);
     for (size_t k = 0; k < fit->choices.count; k++)
         mf_progress_print(to, "chosen: %s", fit->choices.line[k]);
+    if (fit->choices.doubt[0])
+        mf_progress_print(to, "mesofit: warning: %s", fit->choices.doubt);
     if (etd->left_out > 0)
         mf_progress_print(to,
                           "target.etd: %zu of %zu cells of the target are not known and left out",

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "scene/heading.h"
 #include "scene/scene.h"
+#include "scene/scene_doubts.h"
 #include "io/checkpoint.h"
 #include "mesofit.h"
 #include "report/progress.h"
@@ -282,14 +283,16 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
     return begin_folder(run, options->resume);
 }
 
+static void print_doubt(void *context, const char *line) {
+    mf_progress_print(context, "mesofit: warning: %s", line);
+}
+
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
-    char line[SCENE_LINE_SIZE];
     mf_progress_print_scale(&run->progress, &run->scene.units);
     if (warning)
         mf_progress_print(&run->progress, "mesofit: warning: %s", warning);
-    if (mf_scene_is_hot(&run->scene, line))
-        mf_progress_print(&run->progress, "mesofit: warning: %s", line);
+    mf_scene_doubts(&run->scene, &(struct scene_doubts_listener){print_doubt, &run->progress});
 }
 
 static enum status measure(struct run *run, const struct measure_listener *listener) {
@@ -437,6 +440,7 @@ enum status mf_simulate_explain(const char *file, const struct run_options *opti
     // All that a run refuses before its first step.
     CHECK(begin_measuring(run, file));
     mf_explain_scale(stdout, &run->scene.units);
+    mf_explain_doubts(stdout, &run->scene);
     mf_explain_scene(stdout, &whole, &run->scene.units, run->observables.use, run->plan.every);
     describe_memory(run, share, memory);
     printf("%s\n", memory);

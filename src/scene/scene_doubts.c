@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene/scene_doubts.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+/// Kelvins: below, all but neon, hydrogen and helium are solid; above, molecules come apart.
+static const double coldest = 60, hottest = 3000, celsius = 273.15;
+
+/// Of the time in which a bead reaches its neighbours. The program takes a fiftieth, and
+/// dissipative particles as in the literature up to a seventh.
+static const double longest_step = 0.2;
+
+/// Of atoms, in nm.
+static const double shortest_bond = 0.05;
+
+__attribute__((format(printf, 2, 3))) static void tell(const struct scene_doubts_listener *listener,
+                                                       const char *format, ...) {
+    char line[SCENE_DOUBT_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    listener->tell(listener->context, line);
+}
+
+struct scene_scales mf_scene_scales(const struct scene *scene) {
+    const struct simulation_setup *setup = &scene->setup;
+    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
+    const double mass = masses.maximum > 0 ? masses.minimum : 1;
+    const double density = (double)setup->placement.count / mf_box_volume(&setup->box);
+    const double distance = pow(density, -1.0 / setup->box.dimensions);
+    const double mobility = setup->integrator->mobility ? setup->integrator->mobility(setup) : 0;
+    return (struct scene_scales){.distance = distance,
+                                 .time = mobility > 0 ? distance * distance /
+                                                            (2 * setup->temperature * mobility)
+                                                      : distance * sqrt(mass / setup->temperature)};
+}
+
+static void doubt_temperature(const struct scene *scene,
+                              const struct scene_doubts_listener *listener) {
+    static const double usual = 50; // hardly a multiple of T_0, often a number of kelvins
+    const struct units *units = &scene->units;
+    const double temperature = scene->setup.temperature, kelvin = temperature * units->temperature;
+    if (!mf_units_known(units)) {
+        if (temperature > usual)
+            tell(listener,
+                 "temperature: %g in units of k_B T_0, usually 1; give kelvins in \"units\"",
+                 temperature);
+        return;
+    }
+    if (kelvin > 0 && kelvin < coldest)
+        tell(listener,
+             "temperature: at %g K hardly anything is liquid; it is in kelvins, and %g degrees "
+             "Celsius are %.6g",
+             kelvin, kelvin, kelvin + celsius);
+    else if (kelvin > hottest)
+        tell(listener, "temperature: at %g K hardly anything is liquid; it is in kelvins", kelvin);
+}
+
+static void doubt_time_step(const struct scene *scene,
+                            const struct scene_doubts_listener *listener) {
+    const struct simulation_setup *setup = &scene->setup;
+    const double time = mf_scene_scales(scene).time;
+    const double factor = mf_units_factor(&scene->units, "tau");
+    char unit[UNITS_NAME_SIZE];
+    if (setup->integrator->samples || setup->integrator->events ||
+        !(setup->time_step > longest_step * time))
+        return;
+    mf_units_name(&scene->units, "tau", unit);
+    tell(listener,
+         "time_step: in %.4g %s a bead moves %.2g of the distance to its neighbours, which no "
+         "forces "
+         "follow; a fiftieth is usual, %.2g %s",
+         factor * setup->time_step, unit, setup->time_step / time, factor * 0.02 * time, unit);
+}
+
+static void doubt_length(const struct scene *scene, const char *key, double rest,
+                         const struct scene_doubts_listener *listener) {
+    const struct units *units = &scene->units;
+    const double factor = mf_units_factor(units, "lambda"),
+                 distance = mf_scene_scales(scene).distance;
+    char unit[UNITS_NAME_SIZE];
+    mf_units_name(units, "lambda", unit);
+    if (rest > scene_longest_bond * distance)
+        tell(listener,
+             "%s: a bond of %.4g %s, where beads have a mean distance of %.3g: is it in another "
+             "unit of length?",
+             key, factor * rest, unit, factor * distance);
+    else if (mf_units_known(units) && rest > 0 && rest * units->length < shortest_bond)
+        tell(listener,
+             "%s: a bond of %.4g %s is shorter than any between atoms: is it in another "
+             "unit of length?",
+             key, factor * rest, unit);
+}
+
+static void doubt_terms(const struct scene *scene, const struct scene_doubts_listener *listener) {
+    const struct molecules *molecules = &scene->molecules.molecules;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (int g = 0; g < molecules->groups[order]; g++) {
+            const struct bonded_curve *curve = &molecules->group[order][g].curve;
+            char key[64];
+            if (curve->law == NULL)
+                continue;
+            snprintf(key, sizeof key, "%s.%s", mf_bonded_kinds[order]->plural,
+                     molecules->group[order][g].name);
+            const double rest = mf_bonded_rest(curve) / mf_bonded_kinds[order]->scale;
+            if (mf_bonded_kinds[order]->is_length)
+                doubt_length(scene, key, rest, listener);
+            else if (order == BONDED_ANGLE && rest > 0 && rest <= M_PI)
+                tell(listener,
+                     "%s: an angle of %.4g degrees lets beads overlap: angles are in degrees, and "
+                     "%.4g radians are %.4g",
+                     key, rest, rest, rest / BONDED_RADIANS);
+        }
+}
+
+void mf_scene_doubts(const struct scene *scene, const struct scene_doubts_listener *listener) {
+    doubt_temperature(scene, listener);
+    doubt_time_step(scene, listener);
+    doubt_terms(scene, listener);
+}
