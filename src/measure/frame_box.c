@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/frame_box.h"
 
+#include "base/statistics.h"
 #include "base/visible.h"
 
 #include <math.h>
@@ -72,4 +73,14 @@ enum status mf_frame_box_places(const struct box_vectors *box, const struct traj
             place[i][k] = box_fraction(boxes, 1);
         }
     return STATUS_OK;
+}
+
+void mf_frame_box_spread(const struct box_vectors *box, const struct trajectory_frame *frame,
+                         double spread[3]) {
+    for (int i = 0; i < 3; i++) {
+        struct running_mean boxes = {0};
+        for (size_t k = 0; k < frame->atoms; k++)
+            mf_statistics_add(&boxes, product(frame->position[k], box->inverse[i]));
+        spread[i] = mf_statistics_standard_error(&boxes) * sqrt(12 * (double)frame->atoms);
+    }
 }

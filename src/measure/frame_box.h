@@ -20,3 +20,8 @@ enum status mf_frame_box_check_range(const struct box_vectors *box,
 /// test_frame_pairs.
 enum status mf_frame_box_places(const struct box_vectors *box, const struct trajectory_frame *frame,
                                 int32_t *const place[3]) MUST_USE;
+
+/// How far the atoms of a frame spread along each vector, in boxes: sqrt(12) times their standard
+/// deviation, which is 1 of atoms that fill the box evenly, wrapped or not.
+void mf_frame_box_spread(const struct box_vectors *box, const struct trajectory_frame *frame,
+                         double spread[3]);

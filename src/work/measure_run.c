@@ -7,6 +7,7 @@
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"
+#include "work/measure_doubts.h"
 #include "work/measure_output.h"
 
 #include <math.h>
@@ -178,28 +179,10 @@ static void print_interval(struct run *run, size_t count) {
                           every, interval);
 }
 
-/// Units that were told are wrong more often than matter is so thin or dense; bins of 0.01 nm may
-/// then be more than memory holds.
-static void print_density(struct run *run) {
-    static const double thinnest = 1e-3, densest = 200;
-    const char *const units = run->request->frames.options.units;
-    const double(*const a)[3] = (const double(*)[3])run->frames.frame->box;
-    double volume = 0;
-    for (int d = 0; d < 3; d++)
-        volume += a[0][d] *
-                  (a[1][(d + 1) % 3] * a[2][(d + 2) % 3] - a[1][(d + 2) % 3] * a[2][(d + 1) % 3]);
-    const double density = (double)run->mapping.beads / fabs(volume);
-    if (units && run->frames.frame->has_box && (density < thinnest || density > densest))
-        mf_progress_print(
-            &run->progress,
-            "mesofit: warning: --file-units %s make %.3g beads in a nm^3: is the file "
-            "in other units?",
-            units, density);
-}
-
 static enum status begin_measuring(struct run *run) {
     struct measured_plan plan = run->request->measured;
-    print_density(run);
+    mf_measure_doubts(&run->progress, run->frames.frame, run->mapping.beads,
+                      run->request->frames.options.units);
     plan.height = run->height;
     plan.motion.expected = mf_frames_expected(&run->frames, MEASURED_MOTION_FRAMES);
     if (run->request->molecules)

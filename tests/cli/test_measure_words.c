@@ -26,8 +26,9 @@ static double normal(unsigned *seed) {
     return sum;
 }
 
-/// Argon at 300 K in a cube of 20 Å, in LAMMPS's units real: sqrt(k_B T/m) is 2.4988e-3 Å/fs.
-static void write_argon(struct temporary_folder *folder) {
+/// Argon at 300 K in a cube of 20 Å, whatever box is told, in LAMMPS's units real: sqrt(k_B T/m) is
+/// 2.4988e-3 Å/fs.
+static void write_argon_in(struct temporary_folder *folder, double box) {
     static char text[TEXT];
     size_t length = 0;
     unsigned seed = 5;
@@ -35,9 +36,9 @@ static void write_argon(struct temporary_folder *folder) {
         length +=
             (size_t)snprintf(text + length, TEXT - length,
                              "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS "
-                             "pp pp pp\n0 20\n0 20\n0 20\nITEM: ATOMS id type element mass x "
+                             "pp pp pp\n0 %g\n0 %g\n0 %g\nITEM: ATOMS id type element mass x "
                              "y z vx vy vz\n",
-                             t, ATOMS);
+                             t, ATOMS, box, box, box);
         for (int k = 0; k < ATOMS; k++)
             length += (size_t)snprintf(
                 text + length, TEXT - length, "%d %d Ar 39.948 %g %g %g %g %g %g\n", k + 1,
@@ -45,6 +46,10 @@ static void write_argon(struct temporary_folder *folder) {
                 2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed));
     }
     temporary_folder_write(folder, "a.dump", text, length);
+}
+
+static void write_argon(struct temporary_folder *folder) {
+    write_argon_in(folder, 20);
 }
 
 #define MEASURE(...)                                                                               \
@@ -80,6 +85,21 @@ static void test_units_that_cannot_be(void **state) {
                                 "file in other units?");
     MEASURE("--file-units", "metal", "--file-time-step", "0.01");
     assert_contains(result.err, "warning: --file-units metal make velocities of ");
+}
+
+/// Places are taken modulo the box, whichever it is.
+static void test_boxes_that_are_not_those_of_the_atoms(void **state) {
+    static const char *const said[] = {NULL, "a.dump: in its first frame atoms spread over 1.",
+                                       "a.dump: in its first frame atoms fill 0.0"};
+    static const double boxes[] = {20, 12, 200};
+    for (int k = 0; k < 3; k++) {
+        write_argon_in(*state, boxes[k]);
+        MEASURE("--file-units", "real", "--static", "--temperature", "300", "--range", "0.5");
+        if (said[k])
+            assert_contains(result.err, said[k]);
+        else
+            assert_without("first frame");
+    }
 }
 
 static void test_velocities_without_times(void **state) {
@@ -118,9 +138,11 @@ static void test_names_with_blanks_are_quoted(void **state) {
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        TEST(test_a_temperature_that_velocities_have_not), TEST(test_units_that_cannot_be),
-        TEST(test_velocities_without_times), TEST(test_types_by_their_numbers),
-        TEST(test_names_with_blanks_are_quoted)};
+    const struct CMUnitTest tests[] = {TEST(test_a_temperature_that_velocities_have_not),
+                                       TEST(test_units_that_cannot_be),
+                                       TEST(test_boxes_that_are_not_those_of_the_atoms),
+                                       TEST(test_velocities_without_times),
+                                       TEST(test_types_by_their_numbers),
+                                       TEST(test_names_with_blanks_are_quoted)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
