@@ -229,11 +229,13 @@ static enum status read_row(const struct data_table *table, const char *file, st
         mf_data_word_next(line, layout->separator, &word);
     }
     if (words != wanted)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu%s",
-                              file, line->number, words, wanted,
-                              layout->separator != ' ' && words < wanted
-                                  ? ": a cell is empty; leave out its row"
-                                  : "");
+        return mf_status_fail(
+            STATUS_BAD_INPUT, "%s:%zu: %zu columns, the first row has %zu%s", file, line->number,
+            words, wanted,
+            layout->separator == ',' && !memchr(line->begin, '.', (size_t)(line->end - line->begin))
+                ? ": do commas part columns and begin decimals? Part columns by semicolons"
+            : layout->separator != ' ' && words < wanted ? ": a cell is empty; leave out its row"
+                                                         : "");
     return STATUS_OK;
 }
 
@@ -315,6 +317,7 @@ static enum status read_table(struct data_table *table, const char *file, struct
                              "that is meant into a file of its own",
                              file, again));
     recognise(layout, text);
+    table->separator = layout->separator;
     CHECK(measure(table, file, text, layout));
     NEW_ARRAY(table->values, table->rows * table->columns);
     NEW_ARRAY(table->line, table->rows);
@@ -415,24 +418,4 @@ size_t mf_data_table_find(const struct data_table *table, const char *name) {
         word += strspn(word, gaps);
     }
     return names == table->columns ? found : 0;
-}
-
-enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
-                                           size_t column, double min) {
-    if (column >= table->columns)
-        return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no column %zu", file, column + 1);
-    for (size_t row = 0; row < table->rows; row++) {
-        const double value = table->values[row * table->columns + column];
-        const size_t line = table->line[row];
-        if (row == 0 && !(value >= min))
-            return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu: column %zu: %.15g is below %.15g",
-                                  file, line, column + 1, value, min);
-        const double before = row ? table->values[(row - 1) * table->columns + column] : -INFINITY;
-        if (!(value > before))
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s:%zu: column %zu: %.15g does not increase from %.15g in line "
-                                  "%zu (are the columns in another order?)",
-                                  file, line, column + 1, value, before, table->line[row - 1]);
-    }
-    return STATUS_OK;
 }

@@ -26,6 +26,7 @@ struct data_table {
     char *flags;    ///< shape [rows]: the letter that ends each row; NULL unless asked for
     char *header;   ///< names of columns: the last line before the rows, as mf_data_heading_make
     char *comments; ///< all comment lines before the data, as they stand in the file
+    char separator; ///< of columns, as mf_data_line_separator
     /// What of LAMMPS it is: of a g(r) that is averaged the third column counts neighbours.
     enum data_lammps_kind lammps;
 };
@@ -47,7 +48,8 @@ enum status mf_data_table_read_core(struct data_table *table, const char *file) 
 void mf_data_table_clear(struct data_table *table);
 
 /// Check that column `column` grows strictly and starts at `min` or above.
-/// BAD_INPUT with file:line of the first row that does not.
+/// BAD_INPUT with file:line of the first row that does not, or what is likely to be wrong with the
+/// whole: rows that should be columns, commas that part columns and begin decimals, too.
 enum status mf_data_table_check_increasing(const struct data_table *table, const char *file,
                                            size_t column, double min) MUST_USE;
 
@@ -68,6 +70,10 @@ bool mf_data_table_is_numbered(const struct data_table *table);
 /// there is none, or if that line has not as many names as there are columns. Tested:
 /// test_data_table.
 size_t mf_data_table_find(const struct data_table *table, const char *name);
+
+/// Whether a heading says the unit of a column, other than 1, and which.
+enum { DATA_UNIT_SIZE = 64 };
+bool mf_data_table_unit(const struct data_table *table, size_t column, char unit[DATA_UNIT_SIZE]);
 
 /// Make numbers of the reduced `unit` of a column: they are in the unit in brackets after its
 /// name, or, of the first column, in that of the x axis of xmgrace's "@" lines, or else in those of

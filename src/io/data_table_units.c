@@ -73,6 +73,18 @@ static bool find_unit(const struct data_table *table, size_t column, char unit[N
     return heading_unit(table, column, unit) || axis_unit(table, column, unit);
 }
 
+bool mf_data_table_unit(const struct data_table *table, size_t column, char unit[DATA_UNIT_SIZE]) {
+    static const char *const none[] = {"", "1", "-"};
+    char given[NAME_SIZE];
+    if (!heading_unit(table, column, given))
+        return false;
+    for (size_t k = 0; k < sizeof none / sizeof *none; k++)
+        if (strcmp(given, none[k]) == 0)
+            return false;
+    snprintf(unit, DATA_UNIT_SIZE, "%.*s", DATA_UNIT_SIZE - 1, given);
+    return true;
+}
+
 /// A reduced file takes numbers as they are. Of a heading in other units, whose 1 is not the
 /// scene's, it would make something else.
 static enum status check_reduced(const struct data_table *table, const char *file, size_t column,

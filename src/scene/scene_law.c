@@ -190,6 +190,10 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
         if (!is_usable(curve))
             mf_curve_clear(curve);
     }
+    if (law && list == mf_curve_omegas && mf_json_has(&object, "gamma"))
+        mf_json_fault(&object, "gamma",
+                      "omega is the square root of a friction: \"sigma\" is sqrt(gamma), and Groot "
+                      "and Warren's noise is sqrt(2 k_B T) times that");
     if (law)
         mf_json_finish(&object);
     return STATUS_OK;

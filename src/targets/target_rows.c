@@ -92,6 +92,12 @@ static enum status convert(struct data_table *table, const struct target_columns
                            const struct units *units) {
     const int64_t column[] = {columns->x, columns->y, columns->error};
     const char *const unit[] = {columns->x_unit, columns->y_unit, columns->y_unit};
+    char given[DATA_UNIT_SIZE];
+    if (columns->y_unit == NULL && mf_data_table_unit(table, (size_t)columns->y - 1, given))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: column %lld is in %s by its heading, and what is wanted has no "
+                              "unit: a potential, or another column?",
+                              columns->file, (long long)columns->y, given);
     for (size_t k = 0; k < 3; k++)
         if (column[k] > 0 && unit[k])
             TRY(mf_data_table_convert(table, columns->file, (size_t)column[k] - 1, unit[k], units));
