@@ -119,3 +119,40 @@ done:
     mf_memory_free(values);
     return status;
 }
+
+/// The least energy of the curve between points k and k + 1.
+static double least_between(const struct bonded_curve *curve, const double *q, size_t k,
+                            double unit) {
+    enum { PLACES = 32 };
+    double least = INFINITY;
+    for (int n = 1; n < PLACES; n++) {
+        double energy;
+        mf_bonded_value(curve, unit * (q[k] + (q[k + 1] - q[k]) * n / PLACES), &energy, NULL);
+        least = fmin(least, energy);
+    }
+    return least;
+}
+
+enum status mf_bonded_table_check_wells(const struct bonded_curve *curve, const double *q,
+                                        const double *energy, size_t count) {
+    static const double little = 1, accessible = 10;
+    const double unit = mf_bonded_kind_of_table(curve->law)->scale;
+    double min = INFINITY;
+    for (size_t k = 0; k < count; k++)
+        min = fmin(min, energy[k]);
+    for (size_t k = 0; k + 1 < count; k++) {
+        const double left = k > 0 ? fabs(energy[k] - energy[k - 1]) : 0;
+        const double right = k + 2 < count ? fabs(energy[k + 2] - energy[k + 1]) : 0;
+        const double allowed = fmax(little, fabs(energy[k + 1] - energy[k]) + fmin(left, right));
+        const double least = least_between(curve, q, k, unit);
+        if (least >= fmin(energy[k], energy[k + 1]) - allowed || least > min + accessible)
+            continue;
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "between rows %zu and %zu of numbers, of %.4g and %.4g" STATUS_ENERGY
+                              ", the cubic spline through them has a well of %.4g" STATUS_ENERGY
+                              ", as beside a step: write smaller steps of the energy there, or "
+                              "leave out the rows behind it",
+                              k + 1, k + 2, energy[k], energy[k + 1], least);
+    }
+    return STATUS_OK;
+}

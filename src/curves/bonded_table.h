@@ -28,6 +28,15 @@ static inline bool bonded_is_table(const struct bonded_law *law) {
 enum status mf_bonded_table_set_points(struct bonded_curve *curve, const double *q,
                                        const double *energy, size_t count) MUST_USE;
 
+/// Whether the spline has no well that its points do not show: between two of them it must not go
+/// below both by more than 1 k_B T_0 and by more than their difference and the lesser of those to
+/// the points beside, where a bead may come, up to 10 k_B T_0 above the least point. The spline of
+/// a table with a step rings about it by a tenth of its height; that of a smooth well goes below
+/// two points by an eighth of what it rises beside them. Fails: BAD_INPUT with the points. Tested:
+/// test_bonded_law.
+enum status mf_bonded_table_check_wells(const struct bonded_curve *curve, const double *q,
+                                        const double *energy, size_t count) MUST_USE;
+
 void mf_bonded_table_evaluate(const void *parameters, size_t count, const double *q, double *energy,
                               double *slope);
 double mf_bonded_table_rest(const void *parameters);

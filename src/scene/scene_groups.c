@@ -20,7 +20,8 @@ static enum status load_points(struct bonded_curve *curve, int order, struct jso
         mf_scene_read_columns(table->file, unit, bonded_min(order), units, &q, &energy, &count);
     if (status != STATUS_OK)
         mf_json_fault(object, "file", "%s", mf_status_marked());
-    else if ((status = mf_bonded_table_set_points(curve, q, energy, count)) != STATUS_OK)
+    else if ((status = mf_bonded_table_set_points(curve, q, energy, count)) != STATUS_OK ||
+             (status = mf_bonded_table_check_wells(curve, q, energy, count)) != STATUS_OK)
         mf_json_fault(object, "file", "%s: %s", table->file, mf_status_marked());
     mf_memory_free(q);
     mf_memory_free(energy);

@@ -153,6 +153,30 @@ static void test_tables_go_through_functions(void **state) {
     mf_bonded_clear(&dihedral);
 }
 
+/// Wells between rows, as of a harmonic bond on a coarse grid, are there; those beside a step are
+/// the spline's.
+static void test_spline_of_a_step_is_refused(void **state) {
+    enum { POINTS = 20 };
+    double q[POINTS], energy[POINTS];
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        struct bonded_curve bond = make(&mf_bond_table);
+        for (int k = 0; k < POINTS; k++) {
+            q[k] = 0.2 + 0.05 * k;
+            energy[k] = kind == 0   ? 2000 * pow(q[k] - 0.625, 2)
+                        : kind == 1 ? 20 * pow(exp(-6 * (q[k] - 0.48)) - 1, 2)
+                        : kind == 2 ? (k < 10 ? 0 : 500)
+                                    : (k < 5 ? 60 : 2);
+        }
+        assert_ok(mf_bonded_table_set_points(&bond, q, energy, POINTS));
+        const enum status status = mf_bonded_table_check_wells(&bond, q, energy, POINTS);
+        assert_int_equal(status, kind < 2 ? STATUS_OK : STATUS_BAD_INPUT);
+        if (kind == 3)
+            assert_contains(mf_status_message(), "between rows 6 and 7 of numbers, of 2 and 2");
+        mf_bonded_clear(&bond);
+    }
+}
+
 static void test_tables_that_make_no_sense_are_refused(void **state) {
     (void)state;
     static const double q[] = {0, 60, 120, 180, 300}, energy[] = {0, 1, 2, 3, 0};
@@ -197,6 +221,7 @@ int main(void) {
         cmocka_unit_test(test_ryckaert_bellemans_is_butane),
         cmocka_unit_test(test_periodic_dihedrals_count_from_cis),
         cmocka_unit_test(test_tables_go_through_functions),
+        cmocka_unit_test(test_spline_of_a_step_is_refused),
         cmocka_unit_test(test_tables_that_make_no_sense_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
