@@ -281,6 +281,7 @@ static enum status read_state(struct fit_file *fit, struct reading *reading) {
     if (mf_json_fault_count(document) > 0)
         return STATUS_OK;
     TRY(take_constraints(fit, reading, &root));
+    fit->choices.thermostat = fit->friction == FIT_FRICTION_CHOSEN && fit->scene.given.dissipative;
     TRY(mf_fit_defaults_choose(fit, reading->leader));
     TRY(complete(fit, &root));
     state_problem(fit, reading->options);
@@ -386,6 +387,8 @@ static void write_states(const struct fit_file *fit, struct json_writer *writer)
 void mf_fit_file_write(const struct fit_file *fit, struct json_writer *writer) {
     mf_json_write_fields(writer, mf_heading_fields, &fit->heading);
     mf_units_write(&fit->scene.units, writer);
+    if (fit->choices.thermostat)
+        mf_json_write_text(writer, "friction", "chosen");
     if (fit->name[0])
         write_states(fit, writer);
     else

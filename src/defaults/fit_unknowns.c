@@ -303,7 +303,9 @@ enum status mf_fit_unknowns_read(struct fit_file *fit, struct json_object *root)
         mf_json_fault(root, "unknowns",
                       "needs \"potential\", \"omega\", \"numbers\", or "
                       "\"bonds\"" BONDED_LIST_BEYOND_BONDS(AND));
-    if (fit->friction != FIT_FRICTION_FREE && !fit->unknown[UNKNOWN_OMEGA].wanted)
+    const bool of_family =
+        fit->friction == FIT_FRICTION_EXPORTABLE || fit->friction == FIT_FRICTION_LINEAR;
+    if (of_family && !fit->unknown[UNKNOWN_OMEGA].wanted)
         mf_json_fault(root, "friction", "there is no \"omega\" among the \"unknowns\"");
     return STATUS_OK;
 }
@@ -400,17 +402,18 @@ void mf_fit_unknowns_write(const struct fit_file *fit, struct json_writer *write
     mf_json_end(writer);
 }
 
-static const char *const families[] = {"free", "exportable", "linear", NULL};
+static const char *const families[] = {"free", "exportable", "linear", "chosen", NULL};
 
 const struct field mf_fit_friction_fields[] = {
     {"friction", FIELD_CHOICE, .choices = families, .initial = FIT_FRICTION_FREE, .unit = "",
-     .help = "as --friction of fit"},
+     .help = "as --friction of fit; chosen: the scene's, which holds the temperature and is no "
+             "result"},
     FIELD_END,
 };
 
 bool mf_fit_friction_take(struct fit_unknown *omega, enum fit_friction family) {
     struct unknown_parameters *said = &omega->said;
-    if (family == FIT_FRICTION_FREE)
+    if (family == FIT_FRICTION_FREE || family == FIT_FRICTION_CHOSEN)
         return true;
     if (fit_unknown_says(omega, "curve") && said->shape != INVERSE_CURVE_POWER)
         return false;

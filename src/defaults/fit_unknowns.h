@@ -46,8 +46,14 @@ enum status mf_fit_numbers_complete(const struct scene *scene, struct inverse_nu
 /// Lend a problem the laws of the scene that numbers may belong to.
 void mf_fit_numbers_lend(const struct scene *scene, struct inverse_problem *problem);
 
-/// "friction" at the top of a run file, a FIELD_CHOICE at offset 0.
-enum fit_friction { FIT_FRICTION_FREE, FIT_FRICTION_EXPORTABLE, FIT_FRICTION_LINEAR };
+/// "friction" at the top of a run file, a FIELD_CHOICE at offset 0. Chosen is that of used.json:
+/// the scene's, which a program has chosen to hold the temperature.
+enum fit_friction {
+    FIT_FRICTION_FREE,
+    FIT_FRICTION_EXPORTABLE,
+    FIT_FRICTION_LINEAR,
+    FIT_FRICTION_CHOSEN
+};
 extern const struct field mf_fit_friction_fields[];
 
 /// Let ω be of the family: "curve": "power" without an inner cutoff, and its exponent 1 if it is to
