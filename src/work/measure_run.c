@@ -27,6 +27,7 @@ struct run {
     struct frames frames;
     struct measured measured;
     struct beads_file beads;
+    bool told;       ///< what the first frame shows was, before the frames were read again
     double height;   ///< of the least box, where the first does not do for the range [nm]; else 0
     char drift[512]; ///< what changes along the trajectory; "": nothing
 };
@@ -179,10 +180,16 @@ static void print_interval(struct run *run, size_t count) {
                           every, interval);
 }
 
-static enum status begin_measuring(struct run *run) {
-    struct measured_plan plan = run->request->measured;
+/// What frames that are read again would tell again.
+static void tell_first(struct run *run, size_t count) {
+    print_interval(run, count);
     mf_measure_doubts(&run->progress, run->frames.frame, run->mapping.beads,
                       run->request->frames.options.units);
+    run->told = true;
+}
+
+static enum status begin_measuring(struct run *run) {
+    struct measured_plan plan = run->request->measured;
     plan.height = run->height;
     plan.motion.expected = mf_frames_expected(&run->frames, MEASURED_MOTION_FRAMES);
     if (run->request->molecules)
@@ -219,8 +226,8 @@ static enum status read_frames(struct run *run) {
         if (count == 0)
             break;
         if (run->measured.mapping == NULL) {
-            if (run->frames.plan.skip == 0)
-                print_interval(run, count);
+            if (!run->told)
+                tell_first(run, count);
             TRY(begin_measuring(run));
         }
         const double height = mf_measured_height(run->frames.frame, count, INFINITY);

@@ -28,7 +28,8 @@ static double normal(unsigned *seed) {
 
 /// Argon at 300 K in a cube of 20 Å, whatever box is told, in LAMMPS's units real: sqrt(k_B T/m) is
 /// 2.4988e-3 Å/fs.
-static void write_argon_in(struct temporary_folder *folder, double box) {
+/// @param[in] shrink  of the box from frame to frame [Å]
+static void write_argon_in(struct temporary_folder *folder, double box, double shrink) {
     static char text[TEXT];
     size_t length = 0;
     unsigned seed = 5;
@@ -38,7 +39,7 @@ static void write_argon_in(struct temporary_folder *folder, double box) {
                              "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS "
                              "pp pp pp\n0 %g\n0 %g\n0 %g\nITEM: ATOMS id type element mass x "
                              "y z vx vy vz\n",
-                             t, ATOMS, box, box, box);
+                             t, ATOMS, box - t * shrink, box - t * shrink, box - t * shrink);
         for (int k = 0; k < ATOMS; k++)
             length += (size_t)snprintf(
                 text + length, TEXT - length, "%d %d Ar 39.948 %g %g %g %g %g %g\n", k + 1,
@@ -49,7 +50,7 @@ static void write_argon_in(struct temporary_folder *folder, double box) {
 }
 
 static void write_argon(struct temporary_folder *folder) {
-    write_argon_in(folder, 20);
+    write_argon_in(folder, 20, 0);
 }
 
 #define MEASURE(...)                                                                               \
@@ -93,13 +94,23 @@ static void test_boxes_that_are_not_those_of_the_atoms(void **state) {
                                        "a.dump: in its first frame atoms fill 0.0"};
     static const double boxes[] = {20, 12, 200};
     for (int k = 0; k < 3; k++) {
-        write_argon_in(*state, boxes[k]);
+        write_argon_in(*state, boxes[k], 0);
         MEASURE("--file-units", "real", "--static", "--temperature", "300", "--range", "0.5");
         if (said[k])
             assert_contains(result.err, said[k]);
         else
             assert_without("first frame");
     }
+}
+
+/// Frames are read again where a later box is too small for the range that the first one has.
+static void test_what_the_first_frame_shows_is_told_once(void **state) {
+    static const char words[] = "in its first frame atoms fill ";
+    write_argon_in(*state, 200, 2);
+    MEASURE("--file-units", "real", "--static", "--temperature", "300");
+    const char *first = strstr(result.err, words);
+    assert_non_null(first);
+    assert_null(strstr(first + 1, words));
 }
 
 static void test_velocities_without_times(void **state) {
@@ -141,6 +152,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {TEST(test_a_temperature_that_velocities_have_not),
                                        TEST(test_units_that_cannot_be),
                                        TEST(test_boxes_that_are_not_those_of_the_atoms),
+                                       TEST(test_what_the_first_frame_shows_is_told_once),
                                        TEST(test_velocities_without_times),
                                        TEST(test_types_by_their_numbers),
                                        TEST(test_names_with_blanks_are_quoted)};
