@@ -286,7 +286,7 @@ enum mesofit_status mesofit_fit_iterate(struct mesofit_fit *fit, struct mesofit_
     fit->iterated = fit->iterated || status == STATUS_OK;
     if (status == STATUS_OK && state)
         describe(fit, state);
-    return mf_guard_return(status);
+    return mf_guard_return(mf_units_convert_message(&fit->file.scene.units, status));
 }
 
 struct mesofit_curve mesofit_fit_curve(const struct mesofit_fit *fit, enum mesofit_law_kind kind) {
@@ -337,7 +337,8 @@ done:
 enum mesofit_status mesofit_fit_verify(struct mesofit_fit *fit,
                                        struct mesofit_verification *verification) {
     mf_guard_enter();
-    return mf_guard_return(verify(fit, verification));
+    return mf_guard_return(
+        mf_units_convert_message(&fit->file.scene.units, verify(fit, verification)));
 }
 
 // Single candidates, for optimisers of the caller's own -------------------------------------------

@@ -80,6 +80,8 @@ static enum status open_scene(struct mesofit_simulation **simulation, const char
         &(struct interaction_choice){&mf_user_force, &(*simulation)->force}));
 done:
     if (status != STATUS_OK) {
+        if (*simulation)
+            mf_units_convert_message(&(*simulation)->scene.units, status);
         mesofit_simulation_free(*simulation);
         *simulation = NULL;
     }
@@ -201,7 +203,8 @@ static enum status run(struct mesofit_simulation *simulation, uint64_t steps) {
 
 enum mesofit_status mesofit_simulation_run(struct mesofit_simulation *simulation, uint64_t steps) {
     mf_guard_enter();
-    return mf_guard_return(run(simulation, steps));
+    return mf_guard_return(
+        mf_units_convert_message(&simulation->scene.units, run(simulation, steps)));
 }
 
 uint64_t mesofit_simulation_step(const struct mesofit_simulation *simulation) {
@@ -289,7 +292,8 @@ enum mesofit_status mesofit_simulation_rdf(struct mesofit_simulation *simulation
                                            const struct mesofit_rdf_plan *plan, double *r,
                                            double *g, double *error) {
     mf_guard_enter();
-    return mf_guard_return(measure_rdf(simulation, plan, r, g, error));
+    return mf_guard_return(mf_units_convert_message(&simulation->scene.units,
+                                                    measure_rdf(simulation, plan, r, g, error)));
 }
 
 static enum status measure_means(struct mesofit_simulation *simulation, size_t samples,
@@ -317,5 +321,6 @@ done:
 enum mesofit_status mesofit_simulation_means(struct mesofit_simulation *simulation, size_t samples,
                                              uint64_t every, struct mesofit_means *means) {
     mf_guard_enter();
-    return mf_guard_return(measure_means(simulation, samples, every, means));
+    return mf_guard_return(mf_units_convert_message(
+        &simulation->scene.units, measure_means(simulation, samples, every, means)));
 }

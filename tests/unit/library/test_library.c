@@ -72,6 +72,22 @@ static void test_faults_are_told_and_not_printed(void **state) {
     assert_contains(mesofit_message(), "steepest");
 }
 
+/// As the program tells them.
+static void test_failures_are_told_in_the_units_of_the_scene(void **state) {
+    (void)state;
+    static const char text[] =
+        "{\"units\": \"nm-ps\", \"box\": [4, 4, 4], \"temperature\": 298, \"time_step\": 50,\n"
+        "\"particles\": {\"count\": 500, \"mass\": 18.015},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 600, \"cutoff\": 0.6},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 5, \"cutoff\": 0.6}}\n";
+    struct mesofit_simulation *simulation = mesofit_simulation_parse(text, NULL, 0);
+    assert_non_null(simulation);
+    assert_int_equal(mesofit_simulation_run(simulation, 100), MESOFIT_UNSTABLE);
+    assert_contains(mesofit_message(), "largest force ");
+    assert_contains(mesofit_message(), " kJ/mol/nm");
+    mesofit_simulation_free(simulation);
+}
+
 static void test_scene_reads_its_table_from_memory(void **state) {
     (void)state;
     static const double points[] = {0, 20, 0.25, 12, 0.5, 6, 0.75, 1.5, 1, 0};
@@ -325,6 +341,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_own_law_gives_the_forces_of_the_formula),
         cmocka_unit_test(test_faults_are_told_and_not_printed),
+        cmocka_unit_test(test_failures_are_told_in_the_units_of_the_scene),
         cmocka_unit_test(test_scene_reads_its_table_from_memory),
         cmocka_unit_test(test_user_force_holds_particles_as_equipartition_says),
         cmocka_unit_test(test_user_force_is_refused_when_moves_would_not_feel_it),
