@@ -114,6 +114,9 @@ def _read(content: Content) -> dict[str, Any]:
 
 def _lend(content: Content, keys: Mapping[str, Any], name: str, memory: Memory) -> str:
     """The word for a file, which is lent with the keys in it if there are some."""
+    if "explain" in keys:
+        raise InputError("explain: --explain of the program prints what a run would do; the library "
+                         "prints nothing")
     if isinstance(content, Mapping):
         return memory.add_json(name, merge(content, keys))
     path = _path(content)

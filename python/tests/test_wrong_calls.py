@@ -22,6 +22,12 @@ def optimiser():
     return mesofit.Optimiser("genetic", 2)
 
 
+def test_explain_is_of_the_program():
+    for run in (mesofit.fit, mesofit.simulate):
+        with pytest.raises(InputError, match="explain: --explain of the program prints"):
+            run(SCENE, explain=True)
+
+
 NESTED: list = []
 NESTED.append(NESTED)
 
