@@ -194,16 +194,21 @@ static void report_state(const struct thermodynamics_summary *found, const struc
 }
 
 /// Report a distribution that agrees in the samples of the fit and not in the verification.
-static void report_structure(const char *name, const struct target_distance *distance,
+static void report_structure(const char *name, const struct verify_agreement *agreement,
                              const struct verification *verification, double temperature,
                              const struct units *units, char reason[INVERSE_REASON_SIZE]) {
-    char state[STATE_SIZE], cause[FIT_STEP_TEXT_SIZE];
+    static const double beyond_doubt = 2;
+    const struct target_distance *distance = &agreement->distance;
+    char state[STATE_SIZE], cause[FIT_STEP_TEXT_SIZE], bins[80] = "";
     report_state(&verification->thermodynamics, units, state);
     find_cause(verification, temperature, units, cause);
+    if (distance->rms < beyond_doubt * distance->noise) // which the few bins with most of it hide
+        snprintf(bins, sizeof bins, "; in single bins more: chi^2 by bin is %.2g, by chance %.2g",
+                 agreement->misfit, agreement->probable);
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with %.24s, but its verification is off by %.2g (statistical "
-             "error %.2g) at %.60s: %s",
-             name, distance->rms, distance->noise, state, cause);
+             "error %.2g%s) at %.60s: %s",
+             name, distance->rms, distance->noise, bins, state, cause);
 }
 
 /// Whether the kinetic temperature is off; the structure is then another, even within its noise.
@@ -230,7 +235,6 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
     const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
     char unit[UNITS_NAME_SIZE];
     mf_units_suffix(units, "k_B T_0/lambda^d", unit);
-    const struct target_distance *rdf = &agreement[TARGET_RDF].distance;
     const bool several = fitted->bins.count < fitted->target[TARGET_RDF].count;
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &agreement[TARGET_PRESSURE].distance;
@@ -257,14 +261,14 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
         const int kind = mf_group_kind_target(order);
         if (verify_agreement_holds(&agreement[kind]))
             continue;
-        report_structure(mf_targets_name(kind), &agreement[kind].distance, verification,
-                         temperature, units, reason);
+        report_structure(mf_targets_name(kind), &agreement[kind], verification, temperature, units,
+                         reason);
         return true;
     }
     if (!targets_ask(fitted, TARGET_RDF) || verify_agreement_holds(&agreement[TARGET_RDF]))
         return contradicts_temperature(verification, temperature, units, reason);
-    report_structure(several ? "g(r) of all pair types" : "g(r)", rdf, verification, temperature,
-                     units, reason);
+    report_structure(several ? "g(r) of all pair types" : "g(r)", &agreement[TARGET_RDF],
+                     verification, temperature, units, reason);
     return true;
 }
 

@@ -52,6 +52,19 @@ static void test_fit_verification_is_silent_when_g_is_off_by_noise(void **state)
     assert_false(contradicts(&good, &with_pressure, reason));
 }
 
+/// An rms below its error is no reason: it is few bins, whose errors are small, that contradict.
+static void test_fit_verification_tells_what_an_rms_hides(void **state) {
+    (void)state;
+    struct verify_agreement agreement[TARGETS] = {0};
+    char reason[INVERSE_REASON_SIZE];
+    const struct verification found = make(0.0015, 1.5, 3);
+    agreement[TARGET_RDF] = (struct verify_agreement){{.rms = 0.0015, .noise = 0.002}, 4.2, 1.6};
+    assert_true(
+        mf_fit_verification_contradicts(&found, agreement, &only_rdf, 1.5, 3, NULL, reason));
+    assert_contains(reason, "off by 0.0015 (statistical error 0.002; in single bins more: chi^2 by "
+                            "bin is 4.2, by chance 1.6) at T = 1.5");
+}
+
 /// One pair type of three, which the others hide; and a g that was not fitted, but is compared.
 static void test_fit_verification_sees_each_pair_type_that_was_fitted(void **state) {
     (void)state;
@@ -215,6 +228,7 @@ static void test_fit_verification_tells_why_a_verification_is_worse_than_samples
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_verification_is_silent_when_g_is_off_by_noise),
+        cmocka_unit_test(test_fit_verification_tells_what_an_rms_hides),
         cmocka_unit_test(test_fit_verification_sees_each_pair_type_that_was_fitted),
         cmocka_unit_test(test_fit_verification_names_the_cause_when_g_is_off),
         cmocka_unit_test(test_fit_verification_names_friction_when_the_beads_are_cold),
