@@ -406,8 +406,7 @@ static const char *const families[] = {"free", "exportable", "linear", "chosen",
 
 const struct field mf_fit_friction_fields[] = {
     {"friction", FIELD_CHOICE, .choices = families, .initial = FIT_FRICTION_FREE, .unit = "",
-     .help = "as --friction of fit; chosen: the scene's, which holds the temperature and is no "
-             "result"},
+     .help = "as --friction of fit; chosen: it holds the temperature alone"},
     FIELD_END,
 };
 

@@ -71,7 +71,7 @@ bool mf_data_table_is_numbered(const struct data_table *table);
 /// test_data_table.
 size_t mf_data_table_find(const struct data_table *table, const char *name);
 
-/// Whether a heading says the unit of a column, other than 1, and which.
+/// Whether a heading says the unit of a column, and which.
 enum { DATA_UNIT_SIZE = 64 };
 bool mf_data_table_unit(const struct data_table *table, size_t column, char unit[DATA_UNIT_SIZE]);
 

@@ -74,13 +74,9 @@ static bool find_unit(const struct data_table *table, size_t column, char unit[N
 }
 
 bool mf_data_table_unit(const struct data_table *table, size_t column, char unit[DATA_UNIT_SIZE]) {
-    static const char *const none[] = {"", "1", "-"};
     char given[NAME_SIZE];
     if (!heading_unit(table, column, given))
         return false;
-    for (size_t k = 0; k < sizeof none / sizeof *none; k++)
-        if (strcmp(given, none[k]) == 0)
-            return false;
     snprintf(unit, DATA_UNIT_SIZE, "%.*s", DATA_UNIT_SIZE - 1, given);
     return true;
 }

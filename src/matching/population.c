@@ -36,8 +36,7 @@ const struct field mf_population_fields[] = {
 
 const struct field mf_population_round_fields[] = {
     {"warm_start", FIELD_CHOICE, MEMBER(warm_start), .choices = no_or_yes, .initial = 0, .unit = "",
-     .help = "start from the end of the last round's best simulation, and without curves of a "
-             "potential at first from a configuration that has settled"},
+     .help = "begin where the last round's best simulation ended"},
     FIELD_END,
 };
 

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// Where g is below, it is too steep for the scatter to be told from its slope.
 static const double min_g = 0.2;
@@ -88,15 +89,24 @@ static enum status find_columns(struct target_columns *columns, const struct dat
     return STATUS_OK;
 }
 
+static bool is_energy(const char *unit) {
+    static const char *const energies[] = {"kJ/mol", "kcal/mol", "k_B T_0", "k_B T", "kT", "eV"};
+    for (size_t k = 0; k < sizeof energies / sizeof *energies; k++)
+        if (strcmp(unit, energies[k]) == 0)
+            return true;
+    return false;
+}
+
 static enum status convert(struct data_table *table, const struct target_columns *columns,
                            const struct units *units) {
     const int64_t column[] = {columns->x, columns->y, columns->error};
     const char *const unit[] = {columns->x_unit, columns->y_unit, columns->y_unit};
     char given[DATA_UNIT_SIZE];
-    if (columns->y_unit == NULL && mf_data_table_unit(table, (size_t)columns->y - 1, given))
+    if (columns->y_unit == NULL && mf_data_table_unit(table, (size_t)columns->y - 1, given) &&
+        is_energy(given))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: column %lld is in %s by its heading, and what is wanted has no "
-                              "unit: a potential, or another column?",
+                              "unit: a potential?",
                               columns->file, (long long)columns->y, given);
     for (size_t k = 0; k < 3; k++)
         if (column[k] > 0 && unit[k])
