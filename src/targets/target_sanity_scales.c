@@ -97,7 +97,7 @@ static void look_at_diffusion(const struct target_files *files, struct scene_sca
     const struct target_number *target = files->own[TARGET_DIFFUSION];
     const double natural = scales.distance * scales.distance / scales.time;
     const double factor = mf_units_factor(units, "lambda^2/tau");
-    char unit[UNITS_NAME_SIZE], square_cm[64] = "";
+    char unit[UNITS_NAME_SIZE], square_cm[UNITS_NAME_SIZE + 32] = "";
     if (!files->given[TARGET_DIFFUSION] || !(target->value > 0) ||
         target->value > slowest * natural)
         return;
