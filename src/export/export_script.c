@@ -137,3 +137,10 @@ void mf_export_script_explain(const struct export_job *job, const char *dpd, FIL
     else
         fprintf(stream, "A Langevin bath of each particle holds the temperature.\n");
 }
+
+void mf_export_script_excluded(const struct export_job *job, FILE *stream) {
+    const struct molecules *molecules = job->model->molecules;
+    if (molecules && molecules->topology.excludes && mf_export_is_linear(job))
+        fprintf(stream, "It acts also between the pairs that molecules exclude, where that of the "
+                        "result does not.\n");
+}

@@ -22,3 +22,6 @@ void mf_export_script_columns(const struct export_job *job, bool pressure, FILE 
 
 /// What the README says of the thermostat of such a script.
 void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream);
+
+/// The same of engines whose friction also acts between pairs that molecules exclude.
+void mf_export_script_excluded(const struct export_job *job, FILE *stream);

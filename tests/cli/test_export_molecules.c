@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "export/export_bonded.h"
 #include "export/export_units.h"
-#include "forces/bonded.h"
 #include "shared/is_close.h"
 #include "shared/lammps_runs.h"
 #include "shared/run_program.h"
@@ -97,32 +96,11 @@ struct ours {
     double pairs, bonded[BONDED_KINDS];
 };
 
-static double energy_of(const struct ours *ours, int order) {
-    const struct molecules *molecules = ours->of.model.molecules;
-    double sum = 0;
-    for (int k = 0; k < molecules->topology.kinds; k++) {
-        const struct topology_kind *kind = &molecules->topology.kind[k];
-        for (int64_t m = 0; m < kind->count; m++)
-            for (int n = 0; n < kind->terms[order]; n++) {
-                const struct topology_term *term = &kind->term[order][n];
-                int32_t place[BONDED_MAX_TERM_BEADS];
-                double q, energy;
-                for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
-                    place[bead] = (int32_t)ours->of.simulation.particles
-                                      .place[topology_id(kind, m, term->bead[bead])];
-                mf_bonded_measure(order, 1, place, &ours->of.simulation.particles, &q);
-                mf_bonded_value(&molecules->group[order][term->group].curve, q, &energy, NULL);
-                sum += energy;
-            }
-    }
-    return sum;
-}
-
 static void find_ours(struct ours *ours) {
     lammps_runs_find_ours(&ours->of);
     ours->pairs = ours->of.simulation.sums.energy;
     for (int order = 0; order < BONDED_KINDS; order++) {
-        ours->bonded[order] = energy_of(ours, order);
+        ours->bonded[order] = lammps_runs_energy_of(&ours->of, order);
         ours->pairs -= ours->bonded[order];
     }
 }
@@ -287,9 +265,9 @@ static void test_gromacs_has_those_of_our_tables(void **state) {
 static void test_what_an_engine_has_not_is_refused(void **state) {
     static struct run_program_result result;
     make_result(*state, false);
-    RUN_PROGRAM(&result, "export", "out", "--engine", "hoomd", "-o", "hoomd");
+    RUN_PROGRAM(&result, "export", "out", "--engine", "dl_poly", "-o", "dl_poly");
     run_program_assert_code(&result, 2);
-    assert_contains(result.err, "HOOMD-blue is of single beads, and there are molecules");
+    assert_contains(result.err, "DL_POLY is of single beads, and there are molecules");
     small_inputs_write(*state, "scene.json", scene, "\"count\": 80, \"exclude\": 1",
                        "\"count\": 80, \"exclude\": 0");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "other");

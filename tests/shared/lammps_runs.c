@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shared/lammps_runs.h"
 
+#include "forces/bonded.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -35,6 +36,27 @@ void lammps_runs_find_ours(struct lammps_runs_ours *ours) {
 void lammps_runs_clear_ours(struct lammps_runs_ours *ours) {
     mf_simulation_clear(&ours->simulation);
     mf_export_model_clear(&ours->model);
+}
+
+double lammps_runs_energy_of(const struct lammps_runs_ours *ours, int order) {
+    const struct molecules *molecules = ours->model.molecules;
+    double sum = 0;
+    for (int k = 0; k < molecules->topology.kinds; k++) {
+        const struct topology_kind *kind = &molecules->topology.kind[k];
+        for (int64_t m = 0; m < kind->count; m++)
+            for (int n = 0; n < kind->terms[order]; n++) {
+                const struct topology_term *term = &kind->term[order][n];
+                int32_t place[BONDED_MAX_TERM_BEADS];
+                double q, energy;
+                for (int bead = 0; bead < mf_bonded_kinds[order]->beads; bead++)
+                    place[bead] = (int32_t)ours->simulation.particles
+                                      .place[topology_id(kind, m, term->bead[bead])];
+                mf_bonded_measure(order, 1, place, &ours->simulation.particles, &q);
+                mf_bonded_value(&molecules->group[order][term->group].curve, q, &energy, NULL);
+                sum += energy;
+            }
+    }
+    return sum;
 }
 
 /// The exported input up to its integrator, and what asks for a start.

@@ -16,6 +16,9 @@ struct lammps_runs_ours {
 void lammps_runs_find_ours(struct lammps_runs_ours *ours);
 void lammps_runs_clear_ours(struct lammps_runs_ours *ours);
 
+/// Energy of all terms of an order, as our engine has them.
+double lammps_runs_energy_of(const struct lammps_runs_ours *ours, int order);
+
 /// Forces and sums of the start, without the bath whose noise is a force, too.
 /// @param[in]  columns  of thermo_style, without "step"
 /// @param[out] values   shape [count], one for each of them
