@@ -7,12 +7,41 @@
 #include <stdlib.h>
 #include <string.h>
 
+// A bath -----------------------------------------------------------------------------------------
+
+/// ω² of a table at r, or 0.
+static double friction_at(const struct table *omega, double r) {
+    double value = 0;
+    if (omega && r < omega->cutoff)
+        mf_table_evaluate_pair(omega, 0, r, &value, NULL, NULL);
+    return value * value;
+}
+
+double mf_export_slowing(const struct export_job *job) {
+    enum { POINTS = 1000 };
+    const struct simulation_setup *setup = &job->model->setup;
+    const struct table *across = export_model_across(job->model);
+    const double density = (double)job->model->count / mf_box_volume(&setup->box);
+    const int dimensions = setup->box.dimensions;
+    const double reach = fmax(setup->omega ? setup->omega->cutoff : 0, across ? across->cutoff : 0);
+    double friction = 0;
+    for (int k = 0; k < POINTS && reach > 0; k++) {
+        const double width = reach / POINTS, r = (k + 0.5) * width;
+        double phi;
+        mf_table_evaluate_pair(setup->potential, 0, r, &phi, NULL, NULL);
+        friction += density * mf_box_shell_volume(&setup->box, r - width / 2, r + width / 2) *
+                    (friction_at(setup->omega, r) + (dimensions - 1) * friction_at(across, r)) *
+                    fmin(1, exp(-phi / setup->temperature)) / dimensions;
+    }
+    return friction > 0 ? job->model->mass[0] / friction : 100 * job->time_step;
+}
+
 // What runs ---------------------------------------------------------------------------------------
 
 const char *mf_export_dynamics_friction(const struct export_job *job) {
     return job->engine->friction != EXPORT_POWER ? job->engine->friction_name
-           : mf_export_is_linear(job)            ? "dpd/tstat"
-                                                 : "dpd/ext/tstat";
+           : mf_export_is_linear(job) && !export_model_across(job->model) ? "dpd/tstat"
+                                                                          : "dpd/ext/tstat";
 }
 
 /// Whether the engine can express the friction at all.
@@ -20,11 +49,10 @@ static bool can_express(const struct export_job *job) {
     switch (job->engine->friction) {
     case EXPORT_NO_FRICTION:
         return false;
-    case EXPORT_LINEAR_OF_ONE_TYPE:
-        return mf_export_is_linear(job) && job->model->types == 1;
     case EXPORT_LINEAR:
         return mf_export_is_linear(job);
     case EXPORT_POWER:
+    case EXPORT_RISING:
         return mf_export_is_power(job);
     }
     return false;
@@ -41,9 +69,13 @@ static enum export_motion choose(const struct export_job *job) {
     return job->engine->ask && job->here != EXPORT_HERE ? EXPORT_BATH : EXPORT_OWN_FRICTION;
 }
 
+bool mf_export_dynamics_pairs(const struct export_job *job) {
+    return job->runs == EXPORT_OWN_FRICTION || job->runs == EXPORT_PROJECTED;
+}
+
 static enum status measure(struct export_job *job, const struct export_request *request) {
     const struct export_substitute substitute = {job->runs == EXPORT_PROJECTED ? job->power : NULL,
-                                                 1 / mf_export_slowing(job)};
+                                                 job->across, 1 / mf_export_slowing(job)};
     const enum status status =
         mf_export_project(job->model, &substitute, job->runs != EXPORT_PROJECTED, request->threads,
                           request->listener, &job->projection);
@@ -155,23 +187,31 @@ const char *mf_export_dynamics_kept(const struct export_job *job) {
 
 /// What would carry the friction, if it is not carried.
 static void print_instead(const struct export_job *job, const char *prefix, FILE *stream) {
-    const bool has = job->model->setup.omega && !job->model->thermostat;
-    const bool wanted = has && job->runs != EXPORT_OWN_FRICTION;
-    if (job->engine->advise && has)
-        job->engine->advise(job, prefix, stream);
-    if (!wanted || job->projected || can_express(job))
+    const struct export_engine *engine = job->engine;
+    const bool across = export_model_across(job->model) != NULL;
+    const bool has = export_model_has_friction(job->model) && !job->model->remembers;
+    if (engine->advise && has)
+        engine->advise(job, prefix, stream);
+    if (!has || job->runs == EXPORT_OWN_FRICTION || job->projected || can_express(job))
         return;
-    if (job->engine->friction == EXPORT_NO_FRICTION)
+    if (across && !engine->across)
+        fprintf(stream,
+                "%sinstead    LAMMPS (dpd/ext/tstat) and ESPResSo have friction across pairs, "
+                "too\n",
+                prefix);
+    else if (engine->friction == EXPORT_NO_FRICTION)
         fprintf(
             stream,
             "%sinstead    LAMMPS, HOOMD-blue, ESPResSo and OpenMM have friction between pairs\n",
             prefix);
+    else if (across)
+        fprintf(stream, "%sinstead    export --project writes the nearest that %s has\n", prefix,
+                engine->title);
     else
         fprintf(stream,
                 "%sinstead    mesofit fit --friction %s finds an omega that %s has; export "
                 "--project writes the nearest to this one\n",
-                prefix, job->engine->friction == EXPORT_POWER ? "exportable" : "linear",
-                job->engine->title);
+                prefix, engine->friction == EXPORT_POWER ? "exportable" : "linear", engine->title);
 }
 
 void mf_export_dynamics_print(const struct export_job *job, const char *prefix, FILE *stream) {
@@ -222,7 +262,7 @@ static void print_cost(const struct export_job *job, FILE *stream) {
     const struct export_units *units = &job->units;
     const double diffusion = units->length * units->length / units->time;
     const struct export_measured *const both[] = {&p->result, &p->projected};
-    static const char *const names[] = {"omega of the result", "power law          "};
+    static const char *const names[] = {"omega of the result", "what stands for it "};
     for (int k = 0; k < 2; k++)
         fprintf(stream,
                 "    %s: temperature %.6g +- %.2g %s, slope of the MSD %.4g +- %.2g %s^2/%s\n",
@@ -239,7 +279,7 @@ static void print_cost(const struct export_job *job, FILE *stream) {
 
 void mf_export_dynamics_explain(const struct export_job *job, FILE *stream) {
     fprintf(stream,
-            "\nOmega is replaced by the power law here (--project). The effect, by two simulations "
+            "\nOmega is replaced by the law above (--project). The effect, by two simulations "
             "of mesofit\nof %lld steps each, with standard errors; projection.tsv has both E:\n\n",
             (long long)job->projection.steps);
     print_cost(job, stream);

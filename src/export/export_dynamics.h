@@ -25,6 +25,9 @@ enum export_here { EXPORT_NOT_ASKED, EXPORT_HERE, EXPORT_NOT_HERE, EXPORT_NO_PRO
 enum status mf_export_dynamics_find(struct export_job *job,
                                     const struct export_request *request) MUST_USE;
 
+/// Whether the engine runs friction between pairs of its own.
+bool mf_export_dynamics_pairs(const struct export_job *job);
+
 /// The block, each line after `prefix`: "# " in a script.
 void mf_export_dynamics_print(const struct export_job *job, const char *prefix, FILE *stream);
 

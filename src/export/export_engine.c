@@ -38,16 +38,16 @@ static enum status check_friction(const struct export_job *job) {
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: --project: what is written for %s has no friction between pairs",
                               job->model->folder, job->engine->title);
-    if (job->engine->friction == EXPORT_LINEAR_OF_ONE_TYPE && job->model->types > 1)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: --project: friction of %s is between beads of one type",
-                              job->model->folder, job->engine->title);
-    if (job->model->setup.omega == NULL)
+    if (job->model->remembers || !export_model_has_friction(job->model))
         return mf_status_fail(
             STATUS_BAD_INPUT, "%s: --project: there is no friction weight%s", job->model->folder,
-            job->model->remembers ? " alone: friction with memory or perpendicular to pairs cannot "
-                                    "be replaced by a power law"
+            job->model->remembers ? " alone: no law of an engine stands for friction with memory"
                                   : "");
+    if (export_model_across(job->model) && !job->engine->across)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: --project: friction of %s is along pairs alone; LAMMPS and "
+                              "ESPResSo have it across pairs, too",
+                              job->model->folder, job->engine->title);
     return STATUS_OK;
 }
 
@@ -124,41 +124,73 @@ static enum status check(const struct export_job *job, bool bands) {
     return job->projected ? check_friction(job) : STATUS_OK;
 }
 
+/// The law that the engine has, or, of engines with s = 1 alone, the nearest power law, which tells
+/// what is missing. LAMMPS has one cutoff for both weights of a pair, ESPResSo one exponent.
 static void find_powers(struct export_job *job) {
     const struct simulation_setup *setup = &job->model->setup;
-    const bool only_linear = job->projected && job->engine->friction != EXPORT_POWER;
-    for (int pair = 0; setup->omega && pair < job->grids.pairs; pair++) {
-        job->power[pair] = mf_export_power_fit(setup->omega, setup->potential, pair,
-                                               setup->temperature, only_linear);
-        job->worst_misfit = fmax(job->worst_misfit, job->power[pair].misfit);
+    const struct table *across = export_model_across(job->model);
+    const bool rising = job->engine->friction == EXPORT_RISING;
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        struct export_power form = {.family = rising           ? EXPORT_RISING
+                                              : job->projected ? job->engine->friction
+                                                               : EXPORT_POWER};
+        if (across && setup->omega && !rising)
+            form.cutoff = fmax(table_cutoff(setup->omega, pair), table_cutoff(across, pair));
+        job->power[pair] =
+            mf_export_power_fit(setup->omega, setup->potential, pair, setup->temperature, &form);
+        if (rising)
+            form.exponent = job->power[pair].exponent;
+        job->across[pair] =
+            mf_export_power_fit(across, setup->potential, pair, setup->temperature, &form);
+        job->worst_misfit =
+            fmax(job->worst_misfit, fmax(job->power[pair].misfit, job->across[pair].misfit));
     }
 }
 
-static const char left_out[] = "Friction with memory or across pairs is left out: g(r) is the "
-                               "result's, the dynamics is not";
+/// What of the friction no law of the engine can stand for; NULL: nothing.
+static const char *left_out(const struct export_job *job) {
+    if (job->model->remembers)
+        return "Friction with memory is left out, and all friction beside it: g(r) is the "
+               "result's, the dynamics is not";
+    return export_model_across(job->model) && !job->engine->across
+               ? "Friction across pairs is left out, and all friction beside it: g(r) is the "
+                 "result's, the dynamics is not"
+               : NULL;
+}
+
+static void print_power(const struct export_job *job, int pair, const struct export_power *p,
+                        const char *direction, FILE *stream) {
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    if (!(p->cutoff > 0))
+        return;
+    mf_export_model_pair(job->model, pair, type, name);
+    fprintf(stream,
+            "    %s%s: gamma = A^2 = %.6g %s %s/%s^2, s = %.6g, r_c = %.6g %s; misfit of omega "
+            "%.2g\n",
+            name, direction, export_units_friction(&job->units) * p->amplitude * p->amplitude,
+            job->units.energy_name, job->units.time_name, job->units.length_name, p->exponent,
+            job->units.length * p->cutoff, job->units.length_name, p->misfit);
+}
 
 static void print_friction(const struct export_job *job, FILE *stream) {
-    const double friction = export_units_friction(&job->units);
-    if (job->model->setup.omega == NULL) {
-        fprintf(stream, "%s.\n",
-                job->model->remembers ? left_out : "The result has no friction weight");
+    if (left_out(job))
+        fprintf(stream, "%s.\n", left_out(job));
+    if (job->model->remembers)
+        return;
+    if (job->model->setup.omega == NULL && export_model_across(job->model) == NULL) {
+        fprintf(stream, "The result has no friction weight.\n");
         return;
     }
-    fprintf(stream, "The power law A (1 - r/r_c)^s nearest to the friction weight omega:\n\n");
+    fprintf(stream, "The law %s nearest to the friction weight omega:\n\n",
+            job->engine->friction == EXPORT_RISING ? "A (1 - (r/r_c)^s)"
+                                                   : "A (1 - r/r_c)^s, a power law,");
     for (int pair = 0; pair < job->grids.pairs; pair++) {
-        const struct export_power *p = &job->power[pair];
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        int type[2];
-        mf_export_model_pair(job->model, pair, type, name);
-        fprintf(stream,
-                "    %s: gamma = A^2 = %.6g %s %s/%s^2, s = %.6g, r_c = %.6g %s; misfit of "
-                "omega %.2g\n",
-                name, friction * p->amplitude * p->amplitude, job->units.energy_name,
-                job->units.time_name, job->units.length_name, p->exponent,
-                job->units.length * p->cutoff, job->units.length_name, p->misfit);
+        print_power(job, pair, &job->power[pair], "", stream);
+        print_power(job, pair, &job->across[pair], ", across pairs", stream);
     }
     fprintf(stream,
-            "\nThe misfit is sqrt(sum w (omega - power law)^2 / sum w omega^2) with w = r^2 "
+            "\nThe misfit is sqrt(sum w (omega - law)^2 / sum w omega^2) with w = r^2 "
             "exp(-phi/k_B T);\nbelow %g the two count as the same friction.\n",
             EXPORT_POWER_BOUND);
 }
@@ -243,8 +275,8 @@ static void print_result(const struct export_job *job, struct progress *to) {
                       job->units.time * job->time_step, job->units.time_name,
                       job->units.time * job->model->setup.time_step, job->units.time_name,
                       job->why_step);
-    if (job->model->remembers)
-        mf_progress_print(to, "mesofit: warning: %.160s: %s", job->model->folder, left_out);
+    if (left_out(job))
+        mf_progress_print(to, "mesofit: warning: %.160s: %s", job->model->folder, left_out(job));
     mf_export_dynamics_tell(job, to);
     mf_progress_print(to, "%s: see README", job->folder);
 }
@@ -359,32 +391,17 @@ const char *mf_export_curve_name(enum export_curve curve) {
 }
 
 bool mf_export_is_power(const struct export_job *job) {
-    return job->model->setup.omega && (job->projected || job->worst_misfit < EXPORT_POWER_BOUND);
+    const struct table *across = export_model_across(job->model);
+    return (job->model->setup.omega || across) && (across == NULL || job->engine->across) &&
+           (job->projected || job->worst_misfit < EXPORT_POWER_BOUND);
 }
 
 bool mf_export_is_linear(const struct export_job *job) {
     for (int pair = 0; pair < job->grids.pairs; pair++)
-        if (job->power[pair].exponent != 1 && job->power[pair].amplitude > 0)
+        if ((job->power[pair].exponent != 1 && job->power[pair].amplitude > 0) ||
+            (job->across[pair].exponent != 1 && job->across[pair].amplitude > 0))
             return false;
     return mf_export_is_power(job);
-}
-
-double mf_export_slowing(const struct export_job *job) {
-    enum { POINTS = 1000 };
-    const struct simulation_setup *setup = &job->model->setup;
-    const double density = (double)job->model->count / mf_box_volume(&setup->box);
-    double friction = 0;
-    if (setup->omega == NULL)
-        return 100 * job->time_step;
-    for (int k = 0; k < POINTS; k++) {
-        const double width = setup->omega->cutoff / POINTS, r = (k + 0.5) * width;
-        double omega, phi;
-        mf_table_evaluate_pair(setup->omega, 0, r, &omega, NULL, NULL);
-        mf_table_evaluate_pair(setup->potential, 0, r, &phi, NULL, NULL);
-        friction += density * mf_box_shell_volume(&setup->box, r - width / 2, r + width / 2) *
-                    omega * omega * fmin(1, exp(-phi / setup->temperature)) / setup->box.dimensions;
-    }
-    return friction > 0 ? job->model->mass[0] / friction : 100 * job->time_step;
 }
 
 double mf_export_place(const struct export_model *model, int axis, size_t particle) {

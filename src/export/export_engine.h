@@ -24,24 +24,21 @@ struct export_job {
     const char *folder;
     struct export_units units;
     struct export_grids grids;
-    struct export_power power[COMPOSITION_MAX_PAIRS]; ///< of ω, if there is one
-    double worst_misfit;                              ///< of all of them
-    bool projected;                                   ///< the power laws stand for ω
-    enum export_motion runs;                          ///< what the engine does of its own
-    enum export_here here;                            ///< whether this machine's has the friction
-    bool measured;                                    ///< what stands for ω was simulated:
-    struct export_projection projection;              ///< what it costs,
-    char unmeasured[256];                             ///< or why it was not; ""
-    double time_step;                                 ///< for this engine [τ]
-    const char *why_step;                             ///< is as long
-    struct export_bonded bonded;                      ///< tables of laws that it has not
-    struct export_densities densities;                ///< tables of "many_body"
+    struct export_power power[COMPOSITION_MAX_PAIRS];  ///< of ω, if there is one
+    struct export_power across[COMPOSITION_MAX_PAIRS]; ///< of ω across pairs, likewise
+    double worst_misfit;                               ///< of all of them
+    bool projected;                                    ///< the power laws stand for ω
+    enum export_motion runs;                           ///< what the engine does of its own
+    enum export_here here;                             ///< whether this machine's has the friction
+    bool measured;                                     ///< what stands for ω was simulated:
+    struct export_projection projection;               ///< what it costs,
+    char unmeasured[256];                              ///< or why it was not; ""
+    double time_step;                                  ///< for this engine [τ]
+    const char *why_step;                              ///< is as long
+    struct export_bonded bonded;                       ///< tables of laws that it has not
+    struct export_densities densities;                 ///< tables of "many_body"
     int exclude; ///< of all molecules, for engines that have one number for all
 };
-
-/// What friction between pairs an engine has: none, A (1 − r/r_c), the same and for beads of one
-/// type only, A (1 − r/r_c)^s.
-enum export_friction { EXPORT_NO_FRICTION, EXPORT_LINEAR, EXPORT_LINEAR_OF_ONE_TYPE, EXPORT_POWER };
 
 enum { EXPORT_PAIR_NAME_SIZE = 2 * COMPOSITION_NAME_SIZE + 8 };
 
@@ -55,6 +52,7 @@ struct export_engine {
     /// Whether it has a law as it is, so that no table is wanted; with `molecules`.
     bool (*has_law)(const struct bonded_curve *curve);
     enum export_friction friction;
+    bool across;               ///< has it across pairs, too
     const char *friction_name; ///< what it calls that, but for EXPORT_POWER; NULL: none
     const char *bath; ///< what it calls its Langevin bath; NULL: nothing that moves is written
     /// Whether the program on this machine has the style of the friction, which it runs of its own
@@ -122,8 +120,8 @@ enum status mf_export_file(const struct export_job *job, const char *name,
 /// The ending of the names of a curve's tables: "", "_lower" or "_upper".
 const char *mf_export_curve_name(enum export_curve curve);
 
-/// Whether the friction is a power law within EXPORT_POWER_BOUND for all pairs, or projected onto
-/// one, and whether its exponent is 1.
+/// Whether the engine's law is the friction's within EXPORT_POWER_BOUND for all pairs, or projected
+/// onto it, along pairs and, if it is there, across them; and whether all exponents are 1.
 bool mf_export_is_power(const struct export_job *job);
 bool mf_export_is_linear(const struct export_job *job);
 

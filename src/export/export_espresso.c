@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // ESPResSo: its table holds its first value below the first row, which is at r = 0 here. The weight
-// of its DPD friction is 1 − (r/r_c)^k, which is ours for k = 1 alone.
+// of its DPD friction is 1 − (r/r_c)^k, along pairs and across them with one k.
 #include "curves/bonded_table.h"
 #include "export/export_script.h"
 #include "export/export_terms.h"
@@ -60,8 +60,30 @@ static void print_terms(FILE *stream) {
                     "    system.part.by_id(i).add_exclusion(j)\n\n");
 }
 
+/// γ, cutoff and exponent of each pair's friction, along it and across.
+static void print_frictions(const struct export_job *job, FILE *stream) {
+    const double unit = export_units_friction(&job->units), length = job->units.length;
+    fprintf(stream, "frictions = {}\n");
+    for (int pair = 0; pair < job->grids.pairs; pair++) {
+        const struct export_power *p = &job->power[pair], *t = &job->across[pair];
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        int type[2];
+        if (!(p->cutoff > 0 || t->cutoff > 0))
+            continue;
+        mf_export_model_pair(job->model, pair, type, name);
+        fprintf(stream,
+                "frictions[%d, %d] = dict(k=%.12g, gamma=%.12g, r_cut=%.12g, trans_gamma=%.12g, "
+                "trans_r_cut=%.12g)\n",
+                type[0], type[1], p->cutoff > 0 ? p->exponent : t->exponent,
+                p->amplitude * p->amplitude * unit, p->cutoff * length,
+                t->amplitude * t->amplitude * unit, t->cutoff * length);
+    }
+}
+
 static void print(const struct export_job *job, FILE *stream) {
     mf_export_script_head(job, "espressomd", stream);
+    if (mf_export_dynamics_pairs(job))
+        print_frictions(job, stream);
     if (job->model->molecules) {
         mf_export_terms_head(job, stream);
         print_laws(stream);
@@ -80,11 +102,10 @@ static void print(const struct export_job *job, FILE *stream) {
     if (job->model->molecules)
         print_terms(stream);
     fprintf(stream,
-            "if linear: # feature DPD\n"
-            "    for a, b, name, cutoff, gamma, friction_cutoff in pairs:\n"
+            "if dpd: # feature DPD\n"
+            "    for (a, b), numbers in frictions.items():\n"
             "        system.non_bonded_inter[a, b].dpd.set_params(\n"
-            "            weight_function=1, k=1, gamma=gamma, r_cut=friction_cutoff,\n"
-            "            trans_weight_function=1, trans_gamma=0, trans_r_cut=0)\n"
+            "            weight_function=1, trans_weight_function=1, **numbers)\n"
             "    system.thermostat.set_dpd(kT=kT, seed=1)\n"
             "else:\n"
             "    system.thermostat.set_langevin(kT=kT, gamma=masses[0] / slowing, seed=1)\n\n");
@@ -107,7 +128,7 @@ static enum status write(const struct export_job *job) {
 }
 
 static void explain(const struct export_job *job, FILE *stream) {
-    mf_export_script_explain(job, "its dpd interaction with weight_function 1 and k = 1", stream);
+    mf_export_script_explain(job, "its dpd interaction with weight_function 1", stream);
     mf_export_script_excluded(job, stream);
 }
 
@@ -117,7 +138,8 @@ const struct export_engine mf_export_espresso = {
     .summary = "run.py, start.txt, A-B.txt; reduced units, or nm, ps, kJ/mol",
     .system = EXPORT_NANOMETRES,
     .interpolation = &mf_export_grid_linear,
-    .friction = EXPORT_LINEAR,
+    .friction = EXPORT_RISING,
+    .across = true,
     .friction_name = "dpd with weight_function 1",
     .bath = "thermostat.set_langevin",
     .commands = "    pypresso run.py\n    pypresso run.py 100000   # steps\n",

@@ -91,7 +91,7 @@ static void print(const struct export_job *job, FILE *stream) {
             molecules ? ", exclusions=[\"special_pair\"] if len(excluded) else []" : "");
     if (molecules)
         print_terms(job, stream);
-    fprintf(stream, "if linear:\n"
+    fprintf(stream, "if dpd:\n"
                     "    friction = hoomd.md.pair.DPD(nlist=cells, kT=kT)\n"
                     "    for a, b, name, cutoff, gamma, friction_cutoff in pairs:\n"
                     "        friction.params[(types[a], types[b])] = dict(A=0, gamma=gamma or 1)\n"

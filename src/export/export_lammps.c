@@ -90,6 +90,11 @@ static void print_potential(const struct export_job *job, enum export_curve curv
                 grid->phi[k] * units->energy, grid->force[k] * export_units_force(units));
 }
 
+/// Whether the pair style of our own has all of the friction: it has none across pairs.
+static bool is_exact(const struct export_job *job) {
+    return job->model->setup.omega && export_model_across(job->model) == NULL;
+}
+
 /// ω is made of straight pieces, whose ends are the rows.
 static void print_omega(const struct export_job *job, int pair, FILE *stream) {
     const struct table *omega = job->model->setup.omega;
@@ -118,7 +123,7 @@ void mf_export_lammps_print_table(const struct export_job *job, FILE *stream) {
     for (int curve = 0; curve < job->grids.curves; curve++)
         for (int pair = 0; pair < job->grids.pairs; pair++)
             print_potential(job, (enum export_curve)curve, pair, stream);
-    for (int pair = 0; job->model->setup.omega && pair < job->grids.pairs; pair++)
+    for (int pair = 0; is_exact(job) && pair < job->grids.pairs; pair++)
         print_omega(job, pair, stream);
     if (job->model->molecules)
         mf_export_lammps_tables(job, stream);
@@ -138,34 +143,47 @@ static void print_types(const struct export_job *job, int pair, FILE *stream) {
     fprintf(stream, "%d %d", type[0] + 1, type[1] + 1);
 }
 
-/// Friction of a power law beside the table.
+/// Friction of a power law beside the table; gamma and then exponents, of each that along pairs
+/// first.
+static void print_coefficients(const struct export_job *job, int pair, const char *style,
+                               FILE *stream) {
+    const struct export_power *power = &job->power[pair], *across = &job->across[pair];
+    const double unit = export_units_friction(&job->units);
+    const double cutoff = fmax(power->cutoff, across->cutoff);
+    if (!(cutoff > 0))
+        return;
+    fprintf(stream, " &\n  \"pair_coeff ");
+    print_types(job, pair, stream);
+    fprintf(stream, " %s %.12g", style, power->amplitude * power->amplitude * unit);
+    if (strcmp(style, "dpd/ext/tstat") == 0)
+        fprintf(stream, " %.12g %.12g %.12g", across->amplitude * across->amplitude * unit,
+                power->cutoff > 0 ? power->exponent : 1, across->cutoff > 0 ? across->exponent : 1);
+    fprintf(stream, " %.12g\"", cutoff * job->units.length);
+}
+
+static double friction_range(const struct export_job *job) {
+    double range = 0;
+    for (int pair = 0; pair < job->grids.pairs; pair++)
+        range = fmax(range, fmax(job->power[pair].cutoff, job->across[pair].cutoff));
+    return range;
+}
+
 static void print_power(const struct export_job *job, FILE *stream) {
-    const bool linear = mf_export_is_linear(job);
+    const char *style = mf_export_dynamics_friction(job);
     const double temperature = job->model->setup.temperature * job->units.temperature;
     fprintf(stream,
             " &\nelif \"${friction} == dpd\" &\n  \"pair_style hybrid/overlay table linear %zu "
             "%s %.12g %.12g %.12g ${seed}",
-            job->grids.grid[0][0].rows, linear ? "dpd/tstat" : "dpd/ext/tstat", temperature,
-            temperature, job->model->setup.omega->cutoff * job->units.length);
+            job->grids.grid[0][0].rows, style, temperature, temperature,
+            friction_range(job) * job->units.length);
     mf_export_lammps_density_styles(job, stream);
     for (int pair = 0; pair < job->grids.pairs; pair++) {
-        const struct export_power *power = &job->power[pair];
-        const double gamma =
-            power->amplitude * power->amplitude * export_units_friction(&job->units);
         fprintf(stream, " &\n  \"pair_coeff ");
         print_types(job, pair, stream);
         fprintf(stream, " table ");
         print_names(job, pair, stream);
         fprintf(stream, "\"");
-        if (!(power->cutoff > 0))
-            continue;
-        fprintf(stream, " &\n  \"pair_coeff ");
-        print_types(job, pair, stream);
-        if (linear)
-            fprintf(stream, " dpd/tstat %.12g", gamma);
-        else // gamma and then exponents, of each the parallel one first
-            fprintf(stream, " dpd/ext/tstat %.12g 0 %.12g 1", gamma, power->exponent);
-        fprintf(stream, " %.12g\"", power->cutoff * job->units.length);
+        print_coefficients(job, pair, style, stream);
     }
     mf_export_lammps_density_coefficients(job, stream);
 }
@@ -214,7 +232,7 @@ static void print_thermostat(const struct export_job *job, FILE *stream) {
     print_langevin(job, stream);
     if (mf_export_is_power(job))
         print_power(job, stream);
-    if (job->model->setup.omega)
+    if (is_exact(job))
         print_exact(job, stream);
     fprintf(stream, " &\nelse \"print 'no such friction here: ${friction}'\" \"quit 1\"\n");
 }
@@ -347,7 +365,7 @@ static void advise(const struct export_job *job, const char *prefix, FILE *strea
                 "%spackage    -var friction dpd runs that of the result, misfit %.2g: %s, of "
                 "LAMMPS's package DPD-BASIC; %s\n",
                 prefix, job->worst_misfit, mf_export_dynamics_friction(job), here[job->here]);
-    if (job->runs != EXPORT_OWN_FRICTION)
+    if (job->runs != EXPORT_OWN_FRICTION && is_exact(job))
         fprintf(stream,
                 "%sexact      -var friction exact runs omega as it is, by mesofit's share/lammps\n",
                 prefix);
@@ -365,9 +383,9 @@ static void explain(const struct export_job *job, FILE *stream) {
                 "-var friction dpd%s: %s by pair_style hybrid/overlay, the power law above. LAMMPS "
                 "needs its package DPD-BASIC.\n",
                 dpd_runs(job) ? ", the default" : "", mf_export_dynamics_friction(job));
-    else if (job->model->setup.omega)
+    else if (job->model->setup.omega || export_model_across(job->model))
         fprintf(stream, "LAMMPS's own dpd/tstat and dpd/ext/tstat cannot express this omega.\n");
-    if (job->model->setup.omega)
+    if (is_exact(job))
         fprintf(stream, "-var friction exact: the result's own omega, by pair_style mesofit/table "
                         "of mesofit's share/lammps.\n");
 }
@@ -379,6 +397,7 @@ const struct export_engine mf_export_lammps = {
     .system = EXPORT_REAL,
     .interpolation = &mf_export_grid_square,
     .friction = EXPORT_POWER,
+    .across = true,
     .bath = "fix langevin",
     .ask = ask,
     .advise = advise,

@@ -6,12 +6,12 @@
 #include "curves/sampled.h"
 #include "export/export_columns.h"
 #include "export/export_density.h"
+#include "export/export_friction.h"
 #include "export/export_start.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
 #include "scene/heading.h"
 #include "observe/rdf_observable.h"
-#include "problem/omega_grid.h"
 #include "problem/verify.h"
 
 #include <errno.h>
@@ -298,29 +298,6 @@ static enum status read_groups(struct export_model *model) {
     return STATUS_OK;
 }
 
-/// The fitted friction weight, one for all pairs.
-static enum status read_omega(struct export_model *model) {
-    static const struct export_column wanted[] = {
-        {"r", "lambda", true}, {"omega", "sqrt(mu/tau)", true}, {0}};
-    enum status status = STATUS_OK;
-    struct omega_grid grid;
-    struct export_columns points;
-    char path[OUTPUT_PATH_SIZE];
-    file_of(model, "omega.tsv", path);
-    TRY(mf_export_columns_read(&points, path, &model->scene.units, wanted));
-    const double *r = points.values, *omega = r + points.rows;
-    if (points.rows != OMEGA_POINTS || !(r[0] < r[points.rows - 1]))
-        status = mf_status_fail(STATUS_BAD_INPUT, "%s: not %d rows with increasing r", path,
-                                OMEGA_POINTS);
-    CHECK(status);
-    mf_omega_grid_init(&grid, r[0], r[points.rows - 1]);
-    CHECK(mf_omega_grid_table(&grid, omega, &model->omega));
-    model->setup.omega = &model->omega;
-done:
-    mf_export_columns_clear(&points);
-    return status;
-}
-
 /// Numbers of the scene that were fitted: its laws and settings with their values.
 static enum status apply_numbers(struct reading *reading) {
     struct export_model *model = reading->model;
@@ -332,27 +309,14 @@ static enum status apply_numbers(struct reading *reading) {
     return STATUS_OK;
 }
 
-/// No engine gets memory, or friction perpendicular to pairs. What is left of such friction would
-/// be another one.
-static void leave_out_friction(struct export_model *model) {
-    const int found = model->scene.unknown & (SCENE_FITS_MEMORY | SCENE_FITS_TRANSVERSE);
-    model->remembers = found || pair_memory_acts(&model->setup.memory);
-    if (!model->remembers)
-        return;
-    model->setup.omega = NULL;
-    model->setup.memory = (struct pair_memory_law){0};
-}
-
 static enum status find_laws(struct reading *reading) {
     struct export_model *model = reading->model;
     TRY(apply_numbers(reading));
     if (reading->unknown & SCENE_FITS_POTENTIAL)
         TRY(read_potentials(model));
-    if (reading->unknown & SCENE_FITS_OMEGA)
-        TRY(read_omega(model));
     TRY(read_groups(model));
     TRY(mf_export_densities_read(model));
-    leave_out_friction(model);
+    TRY(mf_export_friction_find(model, reading->unknown));
     if (model->setup.potential == NULL)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no potential to export",
                               model->folder);
@@ -413,7 +377,7 @@ void mf_export_model_clear(struct export_model *model) {
     }
     for (int c = 0; c < EXPORT_CURVES; c++)
         mf_table_clear(&model->potential[c]);
-    mf_table_clear(&model->omega);
+    mf_export_friction_clear(model);
     mf_numbers_own_clear(&model->own);
     mf_scene_clear(&model->scene);
     *model = (struct export_model){0};
@@ -443,6 +407,8 @@ double mf_export_model_cutoff(const struct export_model *model) {
     double cutoff = setup->potential->cutoff;
     if (setup->omega)
         cutoff = fmax(cutoff, setup->omega->cutoff);
+    if (export_model_across(model))
+        cutoff = fmax(cutoff, export_model_across(model)->cutoff);
     for (int t = 0; law && t < law->terms; t++)
         cutoff = fmax(cutoff, weight_cutoff(&law->term[t].weight));
     return cutoff;

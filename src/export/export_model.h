@@ -25,9 +25,12 @@ struct export_model {
     struct simulation_setup setup;         ///< of the scene, with what was fitted in its place
     struct table potential[EXPORT_CURVES]; ///< of a fitted potential
     bool bands;                            ///< the last two of them are known
-    struct table omega;                    ///< of a fitted friction weight
-    const struct molecules *molecules;     ///< of the scene, or NULL
-    bool remembers;                        ///< friction has memory, or acts across pairs: left out
+    /// Of fitted friction along pairs, across them and with memory.
+    struct table omega, across, memory[PAIR_MEMORY_MAX_MODES];
+    const struct table *own_omega;     ///< all friction of the result: that of the setup is
+    struct pair_memory_law own_memory; ///< what other engines could have (export_friction.h)
+    const struct molecules *molecules; ///< of the scene, or NULL
+    bool remembers;                    ///< friction has memory: all of it is left out
     bool thermostat; ///< omega was chosen to hold the temperature, and is no result
     int types;       ///< at least 1
     char name[COMPOSITION_MAX_TYPES][COMPOSITION_NAME_SIZE];
@@ -56,7 +59,12 @@ void mf_export_model_clear(struct export_model *model);
 
 /// Whether friction is a part of the result: fitted, or the scene's own.
 static inline bool export_model_has_friction(const struct export_model *model) {
-    return (model->setup.omega && !model->thermostat) || model->remembers;
+    return (model->own_omega && !model->thermostat) || pair_memory_acts(&model->own_memory);
+}
+
+/// ω across pairs, which some engines have, or NULL.
+static inline const struct table *export_model_across(const struct export_model *model) {
+    return model->setup.memory.transverse;
 }
 
 /// Pair types, at least 1, and Φ or ω of one of them.

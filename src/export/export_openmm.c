@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // OpenMM: the natural spline of a Continuous1DFunction, one force for each pair type. Its
-// DPDIntegrator (from 8.3 on) multiplies the velocity of a pair by exp(−Δt friction (1 − r/r_c)²):
-// friction is 2 γ/m between beads of one mass.
+// DPDIntegrator (from 8.3 on) multiplies the velocity of a pair by exp(−2 Δt friction (1 −
+// r/r_c)²): friction is γ over twice the reduced mass, γ/m between beads of one mass.
 #include "export/export_script.h"
 #include "export/export_terms.h"
 #include "curves/bonded_table.h"
@@ -76,17 +76,23 @@ static void print(const struct export_job *job, FILE *stream) {
                                   : "");
     if (job->model->molecules)
         print_terms(stream);
-    fprintf(stream,
-            "if linear and len(types) == 1 and hasattr(openmm, \"DPDIntegrator\"):\n"
-            "    a, b, name, cutoff, gamma, friction_cutoff = pairs[0]\n"
-            "    integrator = openmm.DPDIntegrator(temperature, 2 * gamma / masses[0], "
-            "friction_cutoff, time_step)\n"
-            "else:\n"
-            "    integrator = openmm.LangevinMiddleIntegrator(temperature, 1 / slowing, "
-            "time_step)\n"
-            "context = openmm.Context(system, integrator)\n"
-            "context.setPositions(start[:, 1:4].tolist())\n"
-            "context.setVelocities(start[:, 4:7].tolist())\n");
+    fprintf(
+        stream,
+        "if dpd and hasattr(openmm, \"DPDIntegrator\"):\n"
+        "    integrator = openmm.DPDIntegrator(temperature, 0, max(p[5] for p in pairs), "
+        "time_step)\n"
+        "    for particle, a in enumerate(types_of):\n"
+        "        integrator.setParticleType(particle, int(a))\n"
+        "    for a, b, name, cutoff, gamma, friction_cutoff in pairs:\n"
+        "        if gamma > 0: # over twice the reduced mass\n"
+        "            integrator.addTypePair(a, b, gamma * (1 / masses[a] + 1 / masses[b]) / 2,\n"
+        "                                   friction_cutoff)\n"
+        "else:\n"
+        "    integrator = openmm.LangevinMiddleIntegrator(temperature, 1 / slowing, "
+        "time_step)\n"
+        "context = openmm.Context(system, integrator)\n"
+        "context.setPositions(start[:, 1:4].tolist())\n"
+        "context.setVelocities(start[:, 4:7].tolist())\n");
     mf_export_script_columns(job, false, stream);
     fprintf(stream,
             "for block in range(10):\n"
@@ -108,11 +114,11 @@ static enum status write(const struct export_job *job) {
 }
 
 static void explain(const struct export_job *job, FILE *stream) {
-    mf_export_script_explain(
-        job,
-        "DPDIntegrator with friction 2 gamma/m, of beads of one type and from version 8.3 on; "
-        "else a Langevin bath",
-        stream);
+    mf_export_script_explain(job,
+                             "DPDIntegrator with friction gamma/(2 m), m the reduced mass, from "
+                             "version 8.3 on; an older "
+                             "one runs a Langevin bath",
+                             stream);
     mf_export_script_excluded(job, stream);
 }
 
@@ -123,7 +129,7 @@ const struct export_engine mf_export_openmm = {
     .system = EXPORT_NANOMETRES,
     .physical = true,
     .interpolation = &mf_export_grid_spline,
-    .friction = EXPORT_LINEAR_OF_ONE_TYPE,
+    .friction = EXPORT_LINEAR,
     .friction_name = "DPDIntegrator, from version 8.3 on (an older one runs a bath)",
     .bath = "LangevinMiddleIntegrator",
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",

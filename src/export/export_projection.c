@@ -1,57 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "export/export_projection.h"
 
-#include "curves/formula.h"
 #include "dynamics/langevin.h"
 #include "observe/etd.h"
 #include "observe/motion.h"
 #include "observe/thermodynamics.h"
 
 #include <math.h>
-
-// The friction weight that other engines have, nearest to a given one -----------------------------
-
-enum { POINTS = 4000 };
-
-/// The best amplitude for an exponent, and the misfit that it leaves.
-static struct export_power fit_amplitude(const struct table *omega, const struct table *potential,
-                                         int pair, double temperature, double exponent) {
-    struct export_power power = {.exponent = exponent, .cutoff = table_cutoff(omega, pair)};
-    double own = 0, both = 0, theirs = 0;
-    for (int k = 0; k < POINTS; k++) {
-        const double share = (k + 0.5) / POINTS, r = share * power.cutoff;
-        double value, phi;
-        mf_table_evaluate_pair(omega, pair, r, &value, NULL, NULL);
-        mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
-        const double weight = r * r * exp(-phi / temperature), term = pow(1 - share, exponent);
-        own += weight * value * value;
-        both += weight * value * term;
-        theirs += weight * term * term;
-    }
-    power.amplitude = both / theirs;
-    power.misfit = own > 0 ? sqrt(fmax(0, 1 - both * both / (own * theirs))) : 0;
-    return power;
-}
-
-struct export_power mf_export_power_fit(const struct table *omega, const struct table *potential,
-                                        int pair, double temperature, bool only_linear) {
-    static const double golden = 0.6180339887498949;
-    if (!(table_cutoff(omega, pair) > 0))
-        return (struct export_power){0};
-    const struct export_power linear = fit_amplitude(omega, potential, pair, temperature, 1);
-    if (only_linear || linear.misfit < 0.1 * EXPORT_POWER_BOUND)
-        return linear;
-    double low = log(0.02), high = log(20);
-    for (int k = 0; k < 60; k++) {
-        const double left = high - golden * (high - low), right = low + golden * (high - low);
-        if (fit_amplitude(omega, potential, pair, temperature, exp(left)).misfit <
-            fit_amplitude(omega, potential, pair, temperature, exp(right)).misfit)
-            high = right;
-        else
-            low = left;
-    }
-    return fit_amplitude(omega, potential, pair, temperature, exp(0.5 * (low + high)));
-}
 
 // Simulations -------------------------------------------------------------------------------------
 
@@ -148,17 +103,25 @@ static enum status read_results(const struct run *run, struct export_measured *m
                          measured->pairs);
 }
 
-/// A simulation from the model's start with ω, or with a bath; `seed` tells one from another.
-static enum status simulate(const struct export_model *model, const struct table *omega,
-                            const struct langevin_parameters *bath, uint64_t seed,
+/// Friction of a simulation: ω, and what it remembers and is across pairs, or a bath.
+struct friction_of_run {
+    const struct table *omega;
+    struct pair_memory_law memory;
+    const struct langevin_parameters *bath;
+};
+
+/// A simulation from the model's start; `seed` tells one from another.
+static enum status simulate(const struct export_model *model,
+                            const struct friction_of_run *friction, uint64_t seed,
                             struct plan *plan, struct export_measured *measured) {
     CLEARED_BY(clear) struct run run = {0};
     struct simulation_setup setup = model->setup;
     struct simulation_start start = {0};
-    setup.omega = omega;
-    if (bath) {
+    setup.omega = friction->omega;
+    setup.memory = friction->memory;
+    if (friction->bath) {
         setup.integrator = &mf_langevin;
-        setup.integrator_parameters = bath;
+        setup.integrator_parameters = friction->bath;
     }
     setup.seed = seed;
     setup.threads = plan->threads;
@@ -170,24 +133,6 @@ static enum status simulate(const struct export_model *model, const struct table
     TRY(mf_simulation_init(&run.simulation, &setup, &start));
     TRY(sample(&run, plan));
     return read_results(&run, measured);
-}
-
-static enum status tabulate(const struct export_power *power, int pairs, struct table *omega) {
-    enum status status = STATUS_OK;
-    struct table part[COMPOSITION_MAX_PAIRS] = {{0}};
-    for (int pair = 0; pair < pairs; pair++) {
-        struct formula_power_omega_parameters formula = {.sigma = power[pair].amplitude,
-                                                         .exponent = power[pair].exponent,
-                                                         .cutoff = power[pair].cutoff};
-        if (formula.cutoff > 0)
-            CHECK(mf_table_init_omega(&part[pair],
-                                      &(struct curve){&mf_formula_power_omega, &formula}));
-    }
-    CHECK(mf_table_stack(omega, part, pairs));
-done:
-    for (int pair = 0; pair < pairs; pair++)
-        mf_table_clear(&part[pair]);
-    return status;
 }
 
 static void compare(struct export_projection *projection) {
@@ -215,12 +160,6 @@ static enum status check_size(const struct export_model *model, const struct pla
                                 steps);
 }
 
-static void know_nothing(struct export_measured *measured) {
-    *measured = (struct export_measured){.temperature = {NAN, NAN}, .diffusion = {NAN, NAN}};
-    for (int k = 0; k < EXPORT_TIMES * EXPORT_BINS; k++)
-        measured->survival[k] = measured->error[k] = NAN;
-}
-
 enum status mf_export_project(const struct export_model *model,
                               const struct export_substitute *substitute, bool in_passing,
                               int threads, const struct measure_listener *listener,
@@ -230,22 +169,28 @@ enum status mf_export_project(const struct export_model *model,
     struct plan plan = make_plan(model, in_passing ? &passing_effort : &whole_effort);
     struct halves halves = {.listener = listener};
     CLEARED_BY(mf_table_clear) struct table omega = {0};
+    CLEARED_BY(mf_table_clear) struct table across = {0};
+    struct friction_of_run theirs = {.bath = substitute->power ? NULL : &bath};
     *projection =
         (struct export_projection){.interval = (double)plan.etd.plan.every * model->setup.time_step,
                                    .r_maximum = plan.etd.grid.r_maximum,
                                    .steps = plan.measure.samples * plan.measure.every};
     plan.threads = threads;
     plan.half = (struct measure_listener){.report = report_half, .context = &halves};
-    know_nothing(&projection->result);
     if (in_passing)
         TRY(check_size(model, &plan));
-    if (substitute->power)
-        TRY(tabulate(substitute->power, mf_export_model_pairs(model), &omega));
-    if (!model->remembers)
-        TRY(simulate(model, model->setup.omega, NULL, seed + 1, &plan, &projection->result));
+    if (substitute->power) {
+        TRY(mf_export_power_table(substitute->power, mf_export_model_pairs(model), &omega));
+        theirs.omega = &omega;
+    }
+    if (substitute->power && export_model_across(model)) {
+        TRY(mf_export_power_table(substitute->across, mf_export_model_pairs(model), &across));
+        theirs.memory.transverse = &across;
+    }
+    TRY(simulate(model, &(struct friction_of_run){model->own_omega, model->own_memory, NULL},
+                 seed + 1, &plan, &projection->result));
     halves.done = 1;
-    TRY(simulate(model, substitute->power ? &omega : NULL, substitute->power ? NULL : &bath,
-                 seed + 2, &plan, &projection->projected));
+    TRY(simulate(model, &theirs, seed + 2, &plan, &projection->projected));
     compare(projection);
     return STATUS_OK;
 }

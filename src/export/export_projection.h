@@ -4,24 +4,8 @@
 #pragma once
 
 #include "export/export_model.h"
+#include "export/export_power.h"
 #include "observe/measure.h"
-
-struct export_power {
-    double amplitude; ///< A [sqrt(μ/τ)]
-    double exponent;  ///< s
-    double cutoff;    ///< r_c [λ]
-    double misfit; ///< sqrt(Σ w (ω − A (1 − r/r_c)^s)² / Σ w ω²), w = r² exp(−Φ/k_B T)
-};
-
-/// A misfit below which the two count as the same friction: dynamics differ by less than they can
-/// be measured in a run of some minutes.
-#define EXPORT_POWER_BOUND 0.01
-
-/// Least squares of a pair type's ω, weighted as pairs of a dilute gas are; s = 1, which engines
-/// know best, if it is good enough, or if `only_linear`, whatever it leaves. All zero where ω is.
-/// Tested: test_export_model.
-struct export_power mf_export_power_fit(const struct table *omega, const struct table *potential,
-                                        int pair, double temperature, bool only_linear);
 
 enum { EXPORT_BINS = 12, EXPORT_TIMES = 21 };
 
@@ -45,8 +29,9 @@ struct export_projection {
 
 /// What stands for the friction of the result.
 struct export_substitute {
-    const struct export_power *power; ///< shape [pairs]; NULL: a bath of each bead
-    double rate;                      ///< γ/m of the bath [1/τ]
+    const struct export_power *power;  ///< shape [pairs]; NULL: a bath of each bead
+    const struct export_power *across; ///< the same across pairs; with `power`
+    double rate;                       ///< γ/m of the bath [1/τ]
 };
 
 /// Particles times steps that a simulation takes in passing, a minute of one core at most.
@@ -55,8 +40,7 @@ struct export_substitute {
 /// Simulate a model from its start with its own friction and with what stands for it, for windows
 /// of 3 ρ^(−1/d) sqrt(μ/k_B T), in which pairs of neighbours part: twenty, of a small model up to
 /// two hundred, after three for equilibration; in passing ten and sixty. The noise is the sqrt of
-/// the likewise weighted mean of both squared standard errors. Friction that was left out as no
-/// engine has it is not there to be simulated: then numbers of the result are NaN.
+/// the likewise weighted mean of both squared standard errors.
 /// @param[in] listener  gets both simulations as one; NULL: none
 /// Fails: as mf_simulation_run; BAD_INPUT for a box too small for E, and in passing for a model
 /// that takes more than EXPORT_IN_PASSING; NO_MEMORY. Same bits for any number of threads. Tested:

@@ -109,8 +109,8 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
         fprintf(stream, "%s%.12g", type ? ", " : "", model->mass[type] * units->mass);
     fprintf(stream, "]\n");
     print_pairs(job, stream);
-    fprintf(stream, "linear = %s # the friction is A (1 - r/r_c)\nslowing = %.6g\n",
-            mf_export_is_linear(job) ? "True" : "False", mf_export_slowing(job) * units->time);
+    fprintf(stream, "dpd = %s # the friction is that of pairs; else a bath\nslowing = %.6g\n",
+            mf_export_dynamics_pairs(job) ? "True" : "False", mf_export_slowing(job) * units->time);
     fprintf(stream, "steps = int(sys.argv[1]) if len(sys.argv) > 1 else 10000\n"
                     "start = numpy.loadtxt(\"start.txt\")\n\n");
 }
@@ -124,12 +124,12 @@ void mf_export_script_columns(const struct export_job *job, bool pressure, FILE 
 }
 
 void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream) {
-    if (mf_export_is_linear(job))
+    if (mf_export_dynamics_pairs(job))
         fprintf(stream, "Friction and noise: %s, %s%s.\n", dpd,
                 job->model->thermostat ? "chosen to hold the temperature, and no result"
                                        : "that of the result",
-                job->projected ? " as the power law above" : "");
-    else if (job->model->setup.omega)
+                job->projected ? " as the law above" : "");
+    else if (job->model->setup.omega || export_model_across(job->model))
         fprintf(stream,
                 "%s cannot express this omega: a Langevin bath of each particle holds the "
                 "temperature instead. %s\n",
@@ -140,7 +140,7 @@ void mf_export_script_explain(const struct export_job *job, const char *dpd, FIL
 
 void mf_export_script_excluded(const struct export_job *job, FILE *stream) {
     const struct molecules *molecules = job->model->molecules;
-    if (molecules && molecules->topology.excludes && mf_export_is_linear(job))
+    if (molecules && molecules->topology.excludes && mf_export_dynamics_pairs(job))
         fprintf(stream, "It acts also between the pairs that molecules exclude, where that of the "
                         "result does not.\n");
 }

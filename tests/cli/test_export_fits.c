@@ -107,7 +107,8 @@ static void test_friction_weight_that_was_found_is_exported(void **state) {
     assert_true(expected > 0 && fabs(found / expected - 1) < 1e-3);
 }
 
-/// No engine is told of what was found across pairs or with a memory.
+/// What was found across pairs goes to engines that have it, as near as they do; memory to none,
+/// and what that changes D by is told.
 static void test_memory_that_was_found_is_left_out_and_told(void **state) {
     static const char *const unknowns[] = {
         "\"omega\": {\"coefficients\": 4, \"maximum\": 6}, \"omega_transverse\": "
@@ -121,7 +122,10 @@ static void test_memory_that_was_found_is_left_out_and_told(void **state) {
         fit_and_export(*state, unknowns[k], scenes[k]);
         char *text = temporary_folder_read("lammps/README");
         assert_contains(text, "; mesofit's own was 0.02 tau: the same, as");
-        assert_contains(text, "memory or across pairs is left out");
+        assert_contains(text, k ? "Friction with memory is left out" : "A-A, across pairs: gamma");
+        assert_contains(text, "NOT that of the result");
+        assert_contains(text, " of the result, ");
+        assert_contains(text, k ? "NOT that of the result: a Langevin bath" : "dpd/ext/tstat");
         free(text);
     }
 }
@@ -172,7 +176,7 @@ static void test_projection_of_a_power_law_costs_nothing(void **state) {
     simulate_with(*state, "{\"law\": \"power\", \"sigma\": 3}", "out");
     project("lammps", "2");
     char *text = temporary_folder_read("lammps/README");
-    const char *at = strstr(text, "Omega is replaced by the power law here");
+    const char *at = strstr(text, "Omega is replaced by the law above");
     assert_non_null(at);
     for (int k = 0; k < 2; k++) {
         at = strstr(at, ", slope of the MSD ");
@@ -206,11 +210,16 @@ static void test_projection_is_made_for_the_engine_and_its_cost_is_told(void **s
     assert_int_equal(rename("lammps", "one"), 0);
     project("lammps", "2");
     results_assert_same("one", "lammps", files);
-    project("espresso", "2"); // which has no exponent but 1
-    assert_true(number_after("espresso/README", ", s = ") == 1);
-    char *text = temporary_folder_read("espresso/run.py");
-    assert_contains(text, "linear = True");
+    project("hoomd", "2"); // which has no exponent but 1
+    assert_true(number_after("hoomd/README", ", s = ") == 1);
+    char *text = temporary_folder_read("hoomd/run.py");
+    assert_contains(text, "dpd = True");
     free(text);
+    project("espresso", "2"); // another family, which is high up to its end
+    assert_true(number_after("espresso/README", ", s = ") > 2);
+    assert_true(number_after("espresso/run.py", "dict(k=") > 2);
+    assert_true(number_after("espresso/README", "misfit of omega ") <
+                number_after("hoomd/README", "misfit of omega "));
 }
 
 static void assert_refused(const char *from, const char *engine, const char *option,
@@ -228,7 +237,12 @@ static void test_friction_that_cannot_be_written_is_one_line(void **state) {
     assert_refused("free", "lammps", "--project", "no friction weight");
     simulate_with(*state, "{\"law\": \"power\"}, \"dissipative_transverse\": {\"law\": \"power\"}",
                   "across");
-    assert_refused("across", "lammps", "--project",
+    assert_refused("across", "hoomd", "--project", "along pairs alone");
+    simulate_with(*state,
+                  "{\"law\": \"power\"}, \"memory\": {\"slow\": {\"time\": 0.3, \"omega\": "
+                  "{\"law\": \"power\"}}}",
+                  "slow");
+    assert_refused("slow", "lammps", "--project",
                    "no friction weight"); // white friction is left out, too
 }
 

@@ -65,30 +65,86 @@ static void test_what_cannot_be_exported_is_one_line(void **state) {
     assert_contains(result.err, "--engine");
 }
 
-/// What stands in its place would be another friction, called the result's own.
-static void test_friction_with_memory_is_left_out_and_told(void **state) {
+/// What stands in its place would be another friction, called the result's own: with memory all
+/// of it is left out, and of engines that have none across pairs likewise.
+static void test_friction_that_an_engine_has_not_is_left_out_and_told(void **state) {
     static struct run_program_result result;
-    static const char *const instead[] = {
-        "\"memory\": {\"slow\": {\"time\": 0.3, \"omega\": {\"law\": \"power\", \"sigma\": 2}}}",
-        "\"dissipative_transverse\": {\"law\": \"power\", \"sigma\": 2},\n"
-        "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}"};
+    static const struct {
+        const char *instead, *engine, *out, *to, *left_out, *script;
+    } cases[] = {
+        {"\"memory\": {\"slow\": {\"time\": 0.3, \"omega\": {\"law\": \"power\", \"sigma\": 2}}}",
+         "lammps", "slow", "to-slow", "Friction with memory is left out", "to-slow/in.mesofit"},
+        {"\"dissipative_transverse\": {\"law\": \"power\", \"sigma\": 2},\n"
+         "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}",
+         "hoomd", "across", "to-across", "Friction across pairs is left out", "to-across/run.py"}};
     for (int k = 0; k < 2; k++) {
+        char readme[64];
         small_scenes_write(*state, small_scenes_dpd,
-                           "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}", instead[k]);
-        small_scenes_simulate(&result, k ? "across" : "slow");
-        RUN_PROGRAM(&result, "export", k ? "across" : "slow", "--engine", "lammps", "-o",
-                    k ? "to-across" : "to-slow");
+                           "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}",
+                           cases[k].instead);
+        small_scenes_simulate(&result, cases[k].out);
+        RUN_PROGRAM(&result, "export", cases[k].out, "--engine", cases[k].engine, "-o",
+                    cases[k].to);
         run_program_assert_code(&result, 0);
         assert_contains(result.err, "warning");
-        assert_contains(result.err, "memory");
-        char *readme = temporary_folder_read(k ? "to-across/README" : "to-slow/README");
-        assert_contains(readme, "memory or across pairs is left out");
-        assert_null(strstr(readme, "result's own omega"));
-        free(readme);
-        char *input = temporary_folder_read(k ? "to-across/in.mesofit" : "to-slow/in.mesofit");
-        assert_null(strstr(input, "dpd"));
-        free(input);
+        assert_contains(result.err, cases[k].left_out);
+        assert_int_equal(strstr(result.err, "LAMMPS (dpd/ext/tstat) and ESPResSo") != NULL, k);
+        snprintf(readme, sizeof readme, "%s/README", cases[k].to);
+        char *text = temporary_folder_read(readme);
+        assert_contains(text, cases[k].left_out);
+        assert_null(strstr(text, "result's own omega"));
+        free(text);
+        text = temporary_folder_read(cases[k].script);
+        assert_null(strstr(text, " dpd/ext")); // of LAMMPS
+        assert_int_equal(strstr(text, "dpd = False") != NULL, k);
+        free(text);
     }
+}
+
+/// gamma along and across, then both exponents; of ESPResSo one exponent.
+static void test_friction_across_pairs_goes_to_engines_that_have_it(void **state) {
+    static struct run_program_result result;
+    small_scenes_write(*state, small_scenes_dpd,
+                       "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}",
+                       "\"dissipative_transverse\": {\"law\": \"power\", \"sigma\": 2, "
+                       "\"exponent\": EXPONENT},\n"
+                       "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}");
+    char *scene = temporary_folder_read("scene.json");
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "scene.json", scene, "EXPONENT", k ? "1.5" : "1");
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet", "--force");
+        run_program_assert_code(&result, 0);
+        RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "lammps", "--force");
+        run_program_assert_code(&result, 0);
+        char *text = temporary_folder_read("lammps/in.mesofit");
+        const char *at = strstr(text, "pair_coeff 1 1 dpd/ext/tstat ");
+        double gamma[2], exponent[2], cutoff;
+        assert_non_null(at);
+        assert_int_equal(sscanf(at, "pair_coeff 1 1 dpd/ext/tstat %lf %lf %lf %lf %lf", &gamma[0],
+                                &gamma[1], &exponent[0], &exponent[1], &cutoff),
+                         5);
+        assert_true(gamma[0] > 0 && fabs(gamma[1] / gamma[0] * 9 / 4 - 1) < 2e-3);
+        assert_true(exponent[0] == 1 && fabs(exponent[1] - (k ? 1.5 : 1)) < 2e-3 && cutoff > 0);
+        assert_null(strstr(text, "== exact")); // which has none across pairs
+        free(text);
+    }
+    small_inputs_write(*state, "scene.json", scene, "EXPONENT", "1");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet", "--force");
+    RUN_PROGRAM(&result, "export", "out", "--engine", "espresso", "-o", "espresso");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "friction   that of the result: dpd with weight_function 1");
+    free(scene);
+    char *text = temporary_folder_read("espresso/run.py");
+    double gamma, cutoff[2], across;
+    const char *at = strstr(text, "frictions[0, 0] = ");
+    assert_non_null(at);
+    assert_int_equal(sscanf(at,
+                            "frictions[0, 0] = dict(k=1, gamma=%lf, r_cut=%lf, trans_gamma=%lf, "
+                            "trans_r_cut=%lf)",
+                            &gamma, &cutoff[0], &across, &cutoff[1]),
+                     4);
+    assert_true(gamma > 0 && fabs(across / gamma * 9 / 4 - 1) < 1e-4 && cutoff[0] == cutoff[1]);
+    free(text);
 }
 
 static void test_title_stays_in_the_line_of_its_comment(void **state) {
@@ -245,7 +301,8 @@ static void test_fit_in_nm_and_ps_is_exported(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_what_cannot_be_exported_is_one_line),
-        TEST(test_friction_with_memory_is_left_out_and_told),
+        TEST(test_friction_that_an_engine_has_not_is_left_out_and_told),
+        TEST(test_friction_across_pairs_goes_to_engines_that_have_it),
         TEST(test_title_stays_in_the_line_of_its_comment),
         TEST(test_pairs_that_an_engine_would_take_for_one_are_refused),
         TEST(test_folders_may_have_quotes_in_their_names),

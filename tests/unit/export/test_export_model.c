@@ -87,7 +87,8 @@ static void test_power_laws_are_found_and_others_are_not(void **state) {
         double values[] = {cases[k].sigma, cases[k].exponent, cases[k].inner, 1.3};
         make(&curve, power, values, 4);
         assert_ok(mf_table_init_omega(&omega, &curve));
-        const struct export_power found = mf_export_power_fit(&omega, &potential, 0, 1, false);
+        const struct export_power found = mf_export_power_fit(
+            &omega, &potential, 0, 1, &(struct export_power){.family = EXPORT_POWER});
         assert_true((found.misfit < EXPORT_POWER_BOUND) == cases[k].is_power);
         assert_true(fabs(found.cutoff - 1.3) < 1e-12);
         if (cases[k].is_power) {
@@ -112,7 +113,8 @@ static void test_engines_with_one_exponent_get_the_nearest_of_it(void **state) {
     make(&curve, mf_curve_find(mf_curve_omegas, "power"), (double[]){3, 2, 0, 1}, 4);
     assert_ok(mf_table_init_omega(&omega, &curve));
     mf_curve_clear(&curve);
-    const struct export_power found = mf_export_power_fit(&omega, &potential, 0, 1, true);
+    const struct export_power found = mf_export_power_fit(
+        &omega, &potential, 0, 1, &(struct export_power){.family = EXPORT_LINEAR});
     assert_true(found.exponent == 1 && found.cutoff == 1);
     assert_true(fabs(found.amplitude - 1.5) < 1e-4);
     assert_true(fabs(found.misfit - sqrt(0.125)) < 1e-4);
