@@ -86,7 +86,7 @@ for folder; do
                 for (m = 0; m < total / 8; m++)
                     for (k = 1; k <= 8; k++) {
                         text = line[2 + (k == 1 ? 2 * m : k == 8 ? 2 * m + 1 : total / 4 + 6 * m + k - 2)]
-                        sub(/^[^ ]*/, "C" k, text)
+                        sub(/[^ ]*$/, "C" k, text) # their name
                         print text
                     }
             }' total=-2 "$work/out/snapshots/trajectory.extxyz" >"$work/trajectory.extxyz"

@@ -89,10 +89,13 @@ static enum status write_formats(struct state *s) {
     char folder[OUTPUT_PATH_SIZE];
     CLEARED_BY(mf_snapshot_clear) struct snapshot converted = {0};
     mf_observable_file(&s->results, SNAPSHOT_FOLDER, folder);
-    TRY(mf_snapshot_translate(&converted, &s->last, s->results.units));
-    for (int k = 0; mf_snapshot_formats[k]; k++)
-        if (s->settings.formats >> k & 1)
-            TRY(mf_snapshot_write(&converted, mf_snapshot_formats[k], folder, &s->size[k]));
+    for (int angstrom = 0; angstrom < 2; angstrom++) {
+        TRY(mf_snapshot_translate(&converted, &s->last, s->results.units, angstrom));
+        converted.number = (size_t)s->taken;
+        for (int k = 0; mf_snapshot_formats[k]; k++)
+            if (s->settings.formats >> k & 1 && mf_snapshot_formats[k]->angstrom == angstrom)
+                TRY(mf_snapshot_write(&converted, mf_snapshot_formats[k], folder, &s->size[k]));
+    }
     return STATUS_OK;
 }
 

@@ -39,6 +39,10 @@ double mf_elements_mass(const char *symbol) {
     return element ? element->mass : NAN;
 }
 
+const char *mf_elements_symbol(const char *name) {
+    return find(name) ? name : "X";
+}
+
 /// The symbol of the first `letters` letters, as it is written.
 static const struct element *find_letters(const char *name, size_t letters) {
     char symbol[4] = {(char)toupper((unsigned char)name[0])};

@@ -15,3 +15,6 @@ double mf_elements_mass(const char *symbol);
 /// else the first letter of the name ("HW1", "CA"). NULL if that is no element.
 /// @param[in] alone  of its residue there is no other atom. Tested: test_structure.
 const char *mf_elements_guess(const struct structure_atom *atom, bool alone);
+
+/// A name that is the symbol of an element, or else "X", which programs of atoms take for a bead.
+const char *mf_elements_symbol(const char *name);

@@ -3,6 +3,7 @@
 // LAMMPS's dumps in text: styles atom and custom, with any columns in any order. Atoms are sorted
 // by their ids, since LAMMPS writes them as its processors have them.
 #include "trajectory/beads_file.h"
+#include "trajectory/elements.h"
 #include "trajectory/snapshot.h"
 #include "trajectory/lammps_dump.h"
 #include "trajectory/trajectory.h"
@@ -48,7 +49,7 @@ static bool integer_at(const struct lammps_dump *dump, const struct word *word,
     return dump->column[column] < 0 || mf_words_integer(&word[dump->column[column]], value);
 }
 
-/// The name of an atom is its element, or else the number of its type.
+/// The name of an atom is the label of its type, or else its element, or the number of its type.
 static enum status describe_atom(const struct lammps_dump *dump,
                                  const struct trajectory_frame *first, const char *line,
                                  const struct trajectory_scale *scale,
@@ -63,12 +64,16 @@ static enum status describe_atom(const struct lammps_dump *dump,
     if (column[LAMMPS_MASS] >= 0 && !mf_words_number(&word[column[LAMMPS_MASS]], &atom->mass))
         return mf_frame_fail_line(first, line, "expected a number for the mass");
     atom->mass *= scale->mass;
-    const int name = column[LAMMPS_ELEMENT] >= 0 ? column[LAMMPS_ELEMENT] : column[LAMMPS_TYPE];
+    const int name = column[LAMMPS_LABEL] >= 0     ? column[LAMMPS_LABEL]
+                     : column[LAMMPS_ELEMENT] >= 0 ? column[LAMMPS_ELEMENT]
+                                                   : column[LAMMPS_TYPE];
     if (name >= 0 && !mf_words_copy(&word[name], atom->name, STRUCTURE_NAME))
         return mf_frame_fail_line(first, line, "a name of more than %d characters",
                                   STRUCTURE_NAME - 1);
-    if (column[LAMMPS_ELEMENT] >= 0)
-        memcpy(atom->element, atom->name, sizeof atom->element);
+    if (column[LAMMPS_ELEMENT] >= 0 &&
+        !mf_words_copy(&word[column[LAMMPS_ELEMENT]], atom->element, STRUCTURE_NAME))
+        return mf_frame_fail_line(first, line, "an element of more than %d characters",
+                                  STRUCTURE_NAME - 1);
     return STATUS_OK;
 }
 
@@ -90,8 +95,11 @@ static enum status describe(struct trajectory *trajectory, struct trajectory_fra
     structure->has_molecules = dump.column[LAMMPS_MOLECULE] >= 0;
     structure->has_elements = dump.column[LAMMPS_ELEMENT] >= 0;
     structure->has_masses = dump.column[LAMMPS_MASS] >= 0;
-    structure->has_names = structure->has_elements || structure->has_types;
-    structure->names = structure->has_elements ? STRUCTURE_ELEMENTS : STRUCTURE_TYPES;
+    const bool has_labels = dump.column[LAMMPS_LABEL] >= 0;
+    structure->has_names = has_labels || structure->has_elements || structure->has_types;
+    structure->names = has_labels                ? STRUCTURE_NAMES
+                       : structure->has_elements ? STRUCTURE_ELEMENTS
+                                                 : STRUCTURE_TYPES;
     const char *line = dump.first;
     for (size_t k = 0; k < dump.atoms; k++, line = mf_frame_next_line(first, line))
         TRY(describe_atom(&dump, first, line, &trajectory->scale, &structure->atom[k]));
@@ -244,13 +252,14 @@ static enum status print(struct beads_file *file, const struct trajectory_frame 
         fprintf(stream, " time=%.9g", beads->time * beads_file_femtosecond);
     fprintf(stream, " units=real\n%zu\n", beads->atoms);
     TRY(print_box(stream, beads));
-    fprintf(stream, "ITEM: ATOMS id mol type element%s%s%s\n", masses ? " mass" : "",
+    fprintf(stream, "ITEM: ATOMS id mol type element typelabel%s%s%s\n", masses ? " mass" : "",
             beads->unwrapped ? " xu yu zu" : " x y z", beads->has_velocities ? " vx vy vz" : "");
     for (size_t n = 0; n < beads->atoms; n++) {
         const size_t k = file->order[n];
         const struct mapping_bead *const bead = &file->mapping->bead[k];
-        fprintf(stream, "%zu %zu %zu %s", n + 1, bead->molecule + 1, bead->type + 1,
-                beads_file_type_name(file, k));
+        const char *const name = beads_file_type_name(file, k);
+        fprintf(stream, "%zu %zu %zu %s %s", n + 1, bead->molecule + 1, bead->type + 1,
+                mf_elements_symbol(name), name);
         if (masses)
             fprintf(stream, " %.9g", bead->mass);
         beads_file_print_vector(stream, beads->position[k], beads_file_angstrom);
@@ -269,7 +278,7 @@ const struct trajectory_format mf_format_lammps_dump = {
     .extensions = extensions,
     .summary =
         "LAMMPS, dump in text, atom or custom: any columns, x xs xu xsu, ix, vx, id type mol "
-        "element mass",
+        "element typelabel mass",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
     .fetch = fetch,
@@ -301,7 +310,7 @@ static void print_snapshot_heading(const struct snapshot *snapshot, FILE *stream
         fprintf(stream, "0 %.10g\n", box->length[d]);
     if (box->dimensions == 2) // as LAMMPS has two
         fprintf(stream, "-0.5 0.5\n");
-    fprintf(stream, "ITEM: ATOMS id%s type element%s x y z ix iy iz vx vy vz\n",
+    fprintf(stream, "ITEM: ATOMS id%s type element typelabel%s x y z ix iy iz vx vy vz\n",
             mf_snapshot_find(snapshot, "molecule") ? " mol" : "",
             mf_snapshot_has_masses(snapshot) ? " mass" : "");
 }
@@ -316,8 +325,9 @@ static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
         fprintf(stream, "%zu", k + 1);
         if (molecule)
             fprintf(stream, " %.0f", molecule->values[k]);
-        fprintf(stream, " %d %s", mf_snapshot_type(snapshot, k) + 1,
-                mf_snapshot_type_name(snapshot, k));
+        const char *const name = mf_snapshot_type_name(snapshot, k);
+        fprintf(stream, " %d %s %s", mf_snapshot_type(snapshot, k) + 1, mf_elements_symbol(name),
+                name);
         if (mf_snapshot_has_masses(snapshot))
             fprintf(stream, " %.10g", mf_snapshot_mass(snapshot, k));
         print_vector(snapshot, position, k, stream);
@@ -327,5 +337,8 @@ static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
     }
 }
 
-const struct snapshot_format mf_format_lammps_dump_snapshot = {
-    .name = "lammps-dump", .suffix = "lammpstrj", .appended = true, .print = print_snapshot};
+const struct snapshot_format mf_format_lammps_dump_snapshot = {.name = "lammps-dump",
+                                                               .suffix = "lammpstrj",
+                                                               .appended = true,
+                                                               .angstrom = true,
+                                                               .print = print_snapshot};

@@ -204,4 +204,4 @@ static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
 }
 
 const struct snapshot_format mf_format_xtc_snapshot = {
-    .name = "xtc", .suffix = "xtc", .appended = true, .print = print_snapshot};
+    .name = "xtc", .suffix = "xtc", .appended = true, .angstrom = true, .print = print_snapshot};

@@ -4,7 +4,6 @@
 // line for each atom; one frame after the other.
 #include "trajectory/beads_file.h"
 #include "trajectory/elements.h"
-#include "trajectory/snapshot.h"
 #include "trajectory/trajectory.h"
 #include "trajectory/words.h"
 
@@ -17,6 +16,7 @@
 /// What columns of atoms mean to us.
 enum xyz_column {
     XYZ_NAME,
+    XYZ_LABEL,    ///< what a species that is no element is called; instead of XYZ_NAME
     XYZ_POSITION, ///< three columns
     XYZ_VELOCITY, ///< three columns
     XYZ_MOMENTUM, ///< three columns, in the unit of ASE
@@ -44,15 +44,12 @@ static const struct {
     enum xyz_column column;
     int64_t width;
 } known_columns[] = {
-    {"species", XYZ_NAME, 1},      {"element", XYZ_NAME, 1},
-    {"type", XYZ_NAME, 1},         {"pos", XYZ_POSITION, 3},
-    {"position", XYZ_POSITION, 3}, {"positions", XYZ_POSITION, 3},
-    {"velo", XYZ_VELOCITY, 3},     {"vel", XYZ_VELOCITY, 3},
-    {"velocity", XYZ_VELOCITY, 3}, {"velocities", XYZ_VELOCITY, 3},
-    {"momenta", XYZ_MOMENTUM, 3},  {"mass", XYZ_MASS, 1},
-    {"masses", XYZ_MASS, 1},       {"id", XYZ_ID, 1},
-    {"mol", XYZ_MOLECULE, 1},      {"molecule", XYZ_MOLECULE, 1},
-    {"molid", XYZ_MOLECULE, 1},
+    {"name", XYZ_LABEL, 1},         {"species", XYZ_NAME, 1},        {"element", XYZ_NAME, 1},
+    {"type", XYZ_NAME, 1},          {"pos", XYZ_POSITION, 3},        {"position", XYZ_POSITION, 3},
+    {"positions", XYZ_POSITION, 3}, {"velo", XYZ_VELOCITY, 3},       {"vel", XYZ_VELOCITY, 3},
+    {"velocity", XYZ_VELOCITY, 3},  {"velocities", XYZ_VELOCITY, 3}, {"momenta", XYZ_MOMENTUM, 3},
+    {"mass", XYZ_MASS, 1},          {"masses", XYZ_MASS, 1},         {"id", XYZ_ID, 1},
+    {"mol", XYZ_MOLECULE, 1},       {"molecule", XYZ_MOLECULE, 1},   {"molid", XYZ_MOLECULE, 1},
 };
 
 /// Take the next key=value; a word without a value is one with an empty value.
@@ -126,6 +123,8 @@ static bool read_properties(const struct word *value, struct xyz_comment *commen
         if (comment->columns > MAX_COLUMNS)
             return false;
     }
+    if (comment->column[XYZ_LABEL] >= 0)
+        comment->column[XYZ_NAME] = comment->column[XYZ_LABEL];
     return comment->column[XYZ_POSITION] >= 0;
 }
 
@@ -158,7 +157,7 @@ static const char *read_comment(struct xyz_comment *comment, const char *line) {
     *comment = (struct xyz_comment){.periodic = {true, true, true},
                                     .time = NAN,
                                     .step = -1,
-                                    .column = {0, 1, -1, -1, -1, -1, -1},
+                                    .column = {0, -1, 1, -1, -1, -1, -1, -1},
                                     .columns = 4};
     while (next_pair(&line, &key, &value)) {
         const char *const fault = read_pair(comment, &key, &value);
@@ -361,7 +360,7 @@ static void print_heading(const struct beads_file *file, const struct trajectory
         fprintf(stream, "Time=%.9g ", beads->time * beads_file_femtosecond);
     if (beads->step >= 0)
         fprintf(stream, "Step=%lld ", (long long)beads->step);
-    fprintf(stream, "Properties=species:S:1:pos:R:3%s%s:molecule:I:1\n",
+    fprintf(stream, "Properties=species:S:1:pos:R:3%s%s:molecule:I:1:type:I:1:name:S:1\n",
             beads->has_velocities ? ":velo:R:3" : "", masses ? ":masses:R:1" : "");
 }
 
@@ -371,14 +370,15 @@ static enum status print(struct beads_file *file, const struct trajectory_frame 
     print_heading(file, beads, masses);
     for (size_t n = 0; n < beads->atoms; n++) {
         const size_t k = file->order[n];
-        fputs(beads_file_type_name(file, k), stream);
+        fputs(mf_elements_symbol(beads_file_type_name(file, k)), stream);
         beads_file_print_vector(stream, beads->position[k], beads_file_angstrom);
         if (beads->has_velocities)
             beads_file_print_vector(stream, beads->velocity[k],
                                     beads_file_angstrom_per_femtosecond);
         if (masses)
             fprintf(stream, " %.9g", file->mapping->bead[k].mass);
-        fprintf(stream, " %zu\n", file->mapping->bead[k].molecule + 1);
+        fprintf(stream, " %zu %zu %s\n", file->mapping->bead[k].molecule + 1,
+                file->mapping->bead[k].type + 1, beads_file_type_name(file, k));
     }
     return STATUS_OK;
 }
@@ -388,8 +388,8 @@ static const char *const extensions[] = {"xyz", "extxyz", "exyz", NULL};
 const struct trajectory_format mf_format_xyz = {
     .name = "xyz",
     .extensions = extensions,
-    .summary = "XYZ, plain or extended: Lattice, pbc, Time, Units, and of Properties pos, velo, "
-               "momenta, mass, id, mol",
+    .summary = "XYZ, plain or extended: Lattice, pbc, Time, Units, and of Properties name, pos, "
+               "velo, momenta, mass, id, mol",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
     .fetch = fetch,
@@ -397,54 +397,3 @@ const struct trajectory_format mf_format_xyz = {
     .decode = decode,
     .print = print,
 };
-
-// Snapshots of a scene ----------------------------------------------------------------------------
-
-static int width_of(const struct snapshot_column *column) {
-    return column->vector ? 3 : column->components;
-}
-
-/// Readers know some columns by names of their own.
-static const char *name_of(const struct snapshot_column *column) {
-    static const char *const known[][2] = {
-        {"position", "pos"}, {"velocity", "velo"}, {"force", "forces"}};
-    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
-        if (strcmp(column->name, known[k][0]) == 0)
-            return known[k][1];
-    return column->name;
-}
-
-static void print_snapshot_heading(const struct snapshot *snapshot, FILE *stream) {
-    const struct box *box = &snapshot->box;
-    fprintf(stream, "%zu\nLattice=\"%.10g 0 0 0 %.10g 0 0 0 %.10g\" pbc=\"T T %c\" ",
-            snapshot->count, box->length[0], box->length[1], box->length[2],
-            box->dimensions == 3 ? 'T' : 'F');
-    if (snapshot->units)
-        fprintf(stream, "Units=%s ", snapshot->units);
-    fprintf(stream, "Step=%llu Time=%.10g Properties=species:S:1",
-            (unsigned long long)snapshot->step, snapshot->time);
-    for (int n = 0; n < snapshot->columns; n++)
-        fprintf(stream, ":%s:%c:%d", name_of(&snapshot->column[n]),
-                snapshot->column[n].whole ? 'I' : 'R', width_of(&snapshot->column[n]));
-    fprintf(stream, "%s:id:I:1\n", mf_snapshot_has_common_mass(snapshot) ? ":mass:R:1" : "");
-}
-
-static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
-    print_snapshot_heading(snapshot, stream);
-    for (size_t k = 0; k < snapshot->count; k++) {
-        fputs(mf_snapshot_type_name(snapshot, k), stream);
-        for (int n = 0; n < snapshot->columns; n++) {
-            const struct snapshot_column *column = &snapshot->column[n];
-            for (int c = 0; c < width_of(column); c++)
-                fprintf(stream, " %.10g",
-                        c < column->components ? column->values[(size_t)c * snapshot->count + k]
-                                               : 0);
-        }
-        if (mf_snapshot_has_common_mass(snapshot))
-            fprintf(stream, " %.10g", mf_snapshot_mass(snapshot, k));
-        fprintf(stream, " %zu\n", k);
-    }
-}
-
-const struct snapshot_format mf_format_xyz_snapshot = {
-    .name = "extxyz", .suffix = "extxyz", .appended = true, .print = print_snapshot};

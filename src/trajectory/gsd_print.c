@@ -2,8 +2,7 @@
 //
 // Snapshots of a scene and frames of beads as GSD of HOOMD-blue, as OVITO, VMD and MDAnalysis read
 // it. The box is centred at 0. The file says no units: a snapshot's numbers are those of all
-// snapshots, beads' are in nm, ps and u. A snapshot is a file; of beads, what they are stands in
-// frame 0 alone.
+// snapshots, beads' are in nm, ps and u. What beads are stands in frame 0 alone.
 #include "trajectory/beads_file.h"
 #include "trajectory/binary.h"
 #include "trajectory/gsd.h"
@@ -18,34 +17,20 @@ static int count_types(const struct snapshot *snapshot) {
     return snapshot->count > 0 ? mf_snapshot_type(snapshot, snapshot->count - 1) + 1 : 1;
 }
 
-/// A file without masses says that all are 1.
-static bool has_other_masses(const struct snapshot *snapshot) {
-    return mf_snapshot_find(snapshot, "mass") ||
-           (mf_snapshot_has_common_mass(snapshot) &&
-            (snapshot->mass != 1 || snapshot->solvent_mass != 1));
-}
-
-static size_t snapshot_rows(const void *context, enum gsd_chunk chunk, size_t frame) {
-    const struct snapshot *const snapshot = context;
+/// What particles are stands in the first frame alone.
+static size_t rows_of_first(const struct snapshot *snapshot, enum gsd_chunk chunk) {
     const size_t bonds =
         snapshot->topology ? mf_topology_terms(snapshot->topology, BONDED_BOND) : 0;
-    (void)frame;
     switch (chunk) {
-    case STEP:
     case DIMENSIONS:
     case COUNT:
         return 1;
-    case BOX:
-        return 6;
     case TYPES:
         return (size_t)count_types(snapshot);
-    case MASS:
-        return has_other_masses(snapshot) ? snapshot->count : 0;
     case TYPE:
-    case POSITION:
-    case VELOCITY:
-    case IMAGE:
         return snapshot->count;
+    case MASS:
+        return mf_snapshot_has_masses(snapshot) ? snapshot->count : 0;
     case BONDS:
     case BOND_TYPES:
         return bonds > 0;
@@ -54,6 +39,22 @@ static size_t snapshot_rows(const void *context, enum gsd_chunk chunk, size_t fr
         return bonds;
     default:
         return 0;
+    }
+}
+
+static size_t snapshot_rows(const void *context, enum gsd_chunk chunk, size_t frame) {
+    const struct snapshot *const snapshot = context;
+    switch (chunk) {
+    case STEP:
+        return 1;
+    case BOX:
+        return 6;
+    case POSITION:
+    case VELOCITY:
+    case IMAGE:
+        return snapshot->count;
+    default:
+        return frame == 0 ? rows_of_first(snapshot, chunk) : 0;
     }
 }
 
@@ -133,13 +134,22 @@ static void put_snapshot(const void *context, enum gsd_chunk chunk, FILE *stream
 
 static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
     const struct gsd_content content = {snapshot_rows, put_snapshot, snapshot};
-    mf_gsd_put_begin(stream);
-    mf_gsd_put_frame(&content, 0, stream);
-    mf_gsd_put_end(&content, 1, stream);
+    if (snapshot->number == 0)
+        mf_gsd_put_begin(stream);
+    mf_gsd_put_frame(&content, snapshot->number, stream);
 }
 
-const struct snapshot_format mf_gsd_snapshot = {
-    .name = "gsd", .suffix = "gsd", .print = print_snapshot};
+static void finish_snapshots(const struct snapshot *snapshot, size_t frames, FILE *stream) {
+    const struct gsd_content content = {snapshot_rows, put_snapshot, snapshot};
+    if (frames > 0)
+        mf_gsd_put_end(&content, frames, stream);
+}
+
+const struct snapshot_format mf_gsd_snapshot = {.name = "gsd",
+                                                .suffix = "gsd",
+                                                .appended = true,
+                                                .print = print_snapshot,
+                                                .finish = finish_snapshots};
 
 // Beads -------------------------------------------------------------------------------------------
 

@@ -5,8 +5,8 @@
 #include <string.h>
 
 static const char *const column_name[LAMMPS_COLUMNS] = {
-    "id", "type", "mol", "element", "mass", "x",  "y",  "z",  "xs", "ys", "zs", "xu",
-    "yu", "zu",   "xsu", "ysu",     "zsu",  "ix", "iy", "iz", "vx", "vy", "vz",
+    "id", "type", "mol", "element", "typelabel", "mass", "x",  "y",  "z",  "xs", "ys", "zs",
+    "xu", "yu",   "zu",  "xsu",     "ysu",       "zsu",  "ix", "iy", "iz", "vx", "vy", "vz",
 };
 
 /// What follows "ITEM: …", or NULL.

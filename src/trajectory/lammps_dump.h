@@ -16,6 +16,7 @@ enum lammps_column {
     LAMMPS_TYPE,
     LAMMPS_MOLECULE,
     LAMMPS_ELEMENT,
+    LAMMPS_LABEL,
     LAMMPS_MASS,
     LAMMPS_X,                   ///< and y, z after it, as all that follow
     LAMMPS_XS = LAMMPS_X + 3,   ///< as fractions of the box

@@ -13,7 +13,7 @@
 
 const struct snapshot_format *const mf_snapshot_formats[] = {&mf_snapshot_vtp,
                                                              &mf_snapshot_json,
-                                                             &mf_format_xyz_snapshot,
+                                                             &mf_snapshot_xyz,
                                                              &mf_format_lammps_dump_snapshot,
                                                              &mf_gsd_snapshot,
                                                              &mf_format_xtc_snapshot,
@@ -228,7 +228,13 @@ static const char *name_units(const struct units *units) {
 }
 
 enum status mf_snapshot_translate(struct snapshot *converted, const struct snapshot *from,
-                                  const struct units *units) {
+                                  const struct units *of_scene, bool angstrom) {
+    struct units real = of_scene ? *of_scene : (struct units){0};
+    const struct units *units = of_scene;
+    if (angstrom && mf_units_known(&real)) {
+        real.system = UNITS_ANGSTROM_FS;
+        units = &real;
+    }
     mf_snapshot_clear(converted);
     *converted = *from;
     converted->memory = mf_memory_zeroed(from->numbers, sizeof(double));
@@ -266,24 +272,39 @@ static enum status write_whole(const struct snapshot *snapshot,
     return mf_output_commit(&output);
 }
 
-/// Print after the first *size bytes of a file.
-static int append(const struct snapshot *snapshot, const struct snapshot_format *format, int file,
-                  int64_t *size) {
-    if (ftruncate(file, *size) != 0)
+/// Print after the first `size` bytes of a file; with `frames` of them before, what ends these.
+static int print_at(const struct snapshot *snapshot, const struct snapshot_format *format, int file,
+                    bool frame, int64_t size, int64_t *end) {
+    if (ftruncate(file, size) != 0)
         return errno;
-    FILE *stream = fdopen(dup(file), "ab");
+    FILE *stream = fdopen(dup(file), "wb");
     if (stream == NULL)
         return errno;
-    format->print(snapshot, stream);
+    if (fseeko(stream, size, SEEK_SET) != 0) {
+        const int error = errno;
+        fclose(stream);
+        return error;
+    }
+    if (frame)
+        format->print(snapshot, stream);
+    *end = ftello(stream);
+    if (format->finish)
+        format->finish(snapshot, snapshot->number + frame, stream);
     errno = 0;
-    int error = fflush(stream) != 0 || ferror(stream) ? (errno ? errno : EIO) : 0;
-    const int64_t end = ftello(stream);
+    const int error = fflush(stream) != 0 || ferror(stream) ? (errno ? errno : EIO) : 0;
     fclose(stream);
+    return error;
+}
+
+static int append(const struct snapshot *snapshot, const struct snapshot_format *format, int file,
+                  int64_t *size) {
+    int64_t end = *size;
+    const int error = print_at(snapshot, format, file, true, *size, &end);
     mf_output_leave_for_later();
     if (error == 0)
         *size = end;
-    else if (ftruncate(file, *size) != 0) // what was there before is what counts
-        return errno;
+    else // what was there before is what counts
+        print_at(snapshot, format, file, false, *size, &end);
     return error;
 }
 

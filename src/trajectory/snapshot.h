@@ -41,6 +41,7 @@ struct snapshot {
     const struct composition *composition; ///< borrowed
     const struct topology *topology;       ///< borrowed; NULL: there are no molecules
     uint64_t step;
+    size_t number;             ///< of the snapshots of a run, from 0 on
     double time;               ///< [τ]
     const char *units;         ///< of all numbers, as trajectory_units.h names them
     double mass, solvent_mass; ///< of each where there is no column of masses [μ]; NAN: not known
@@ -73,11 +74,11 @@ bool mf_snapshot_has_masses(const struct snapshot *snapshot);      ///< either
 /// The reduced unit of a column: "lambda" of positions; "" of what the scene does not scale.
 const char *mf_snapshot_unit(const struct snapshot_column *column);
 
-/// A copy of what `from` holds, in the units of the file.
+/// A copy of what `from` holds, in the units of the file, or of a format that is in Å and fs.
 /// @param[in,out] told  zero or an earlier copy, to be cleared
 /// Fails: NO_MEMORY. Tested: cli/test_units.
 enum status mf_snapshot_translate(struct snapshot *converted, const struct snapshot *from,
-                                  const struct units *units) MUST_USE;
+                                  const struct units *units, bool angstrom) MUST_USE;
 
 /// Name of a component of a column: "velocity_x", "orientation"; those of positions are x, y, z.
 #define SNAPSHOT_FOLDER "snapshots" ///< in that of a run
@@ -94,10 +95,13 @@ struct snapshot_format {
     const char *name;   ///< as a scene names it
     const char *suffix; ///< of its files
     bool appended;      ///< all snapshots go into one file
+    bool angstrom;      ///< is in Å, fs and kcal/mol where the scene has units
     void (*print)(const struct snapshot *snapshot, FILE *stream);
+    /// What stands behind so many frames of its one file, and before them; NULL: nothing.
+    void (*finish)(const struct snapshot *snapshot, size_t frames, FILE *stream);
 };
 
-extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_format_xyz_snapshot,
+extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_xyz,
     mf_format_lammps_dump_snapshot, mf_gsd_snapshot, mf_format_xtc_snapshot;
 enum { SNAPSHOT_FORMATS = 6 };
 
@@ -106,8 +110,9 @@ extern const struct snapshot_format *const mf_snapshot_formats[];
 extern const char *const mf_snapshot_format_names[];
 
 /// Write a snapshot into `folder`: step_000001000.vtp, which appears whole or not at all, or a
-/// frame after the first `size` bytes of trajectory.extxyz. Those are all that is kept of it, so
-/// that a run that goes on from an earlier step leaves the file of one that was not interrupted.
+/// frame after the first `size` bytes of trajectory.extxyz and what its format has behind frames.
+/// Those are all that is kept of it, so that a run that goes on from an earlier step leaves the
+/// file of one that was not interrupted.
 /// @param[in,out] size  of the format's file of all snapshots [bytes]; others leave it alone
 /// Fails: IO; the file is then as it was. Tested: test_snapshot, cli/test_snapshots.
 enum status mf_snapshot_write(const struct snapshot *snapshot, const struct snapshot_format *format,

@@ -181,11 +181,12 @@ static void test_configurations_carry_molecules_on(void **state) {
     assert_non_null(dump);
     while (fgets(line, sizeof line, dump) && strncmp(line, "ITEM: ATOMS", 11) != 0)
         ;
-    assert_string_equal(line, "ITEM: ATOMS id mol type element mass x y z ix iy iz vx vy vz\n");
+    assert_string_equal(line,
+                        "ITEM: ATOMS id mol type element typelabel mass x y z ix iy iz vx vy vz\n");
     check_bonds("out/configuration.tsv", "out/configuration_bonds.tsv");
     // Types are W, A, B: the first of 60 single beads, after 70 molecules, is molecule 71.
     assert_non_null(fgets(first, sizeof first, dump));
-    assert_int_equal(strncmp(first, "1 71 1 W 1 ", 11), 0);
+    assert_int_equal(strncmp(first, "1 71 1 W W 1 ", 13), 0);
     fclose(dump);
     write_inputs(*state, SINGLE,
                  "\"particles\": {\"types\": {\"W\": 60}, \"placement\": \"file\", \"file\": "

@@ -103,7 +103,7 @@ static void check_chains_are_whole(const char *file, int chains, double edge) {
             double at[3], bond = 0;
             long image[3];
             assert_non_null(fgets(line, sizeof line, stream));
-            assert_int_equal(sscanf(line, "A %lf %lf %lf %ld %ld %ld", &at[0], &at[1], &at[2],
+            assert_int_equal(sscanf(line, "X %lf %lf %lf %ld %ld %ld", &at[0], &at[1], &at[2],
                                     &image[0], &image[1], &image[2]),
                              6);
             for (int d = 0; d < 3; d++) {

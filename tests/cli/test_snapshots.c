@@ -19,7 +19,7 @@
 static const char plan[] = "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}";
 static const char *const files[] = {"snapshots/step_000001200.vtp",
                                     "snapshots/step_000001200.json",
-                                    "snapshots/step_000001200.gsd",
+                                    "snapshots/trajectory.gsd",
                                     "snapshots/step_000001240.vtp",
                                     "snapshots/step_000001800.json",
                                     "snapshots/step_000002400.json",
@@ -138,7 +138,7 @@ static bool read_frame(FILE *stream, struct bead *beads) {
         return false;
     assert_int_equal(atoi(line), BEADS);
     assert_non_null(fgets(line, sizeof line, stream));
-    assert_non_null(strstr(line, "pos:R:3:image:I:3:velo:R:3:forces:R:3:mass:R:1:id"));
+    assert_non_null(strstr(line, "pos:R:3:image:I:3:velo:R:3:forces:R:3:masses:R:1:id"));
     for (int k = 0; k < BEADS; k++) {
         struct bead *b = &beads[k];
         assert_non_null(fgets(line, sizeof line, stream));

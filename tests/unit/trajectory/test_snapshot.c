@@ -49,15 +49,15 @@ static char *write_one(void **state, const struct snapshot_format *format, const
 }
 
 static void test_extxyz_has_a_line_for_each_particle_by_id(void **state) {
-    char *text = write_one(state, &mf_format_xyz_snapshot, "trajectory.extxyz");
+    char *text = write_one(state, &mf_snapshot_xyz, "trajectory.extxyz");
     assert_string_equal(
         text, "3\n"
               "Lattice=\"4 0 0 0 8 0 0 0 1\" pbc=\"T T F\" Step=20 Time=0.5 "
-              "Properties=species:S:1:pos:R:3:image:I:3:velo:R:3:forces:R:3:radius:R:1:mass:R:1:"
-              "id:I:1\n"
-              "A 3.1 3.1 0 0 0 0 102 112 0 -0.2 -0.1666666667 0 1 1 0\n"
-              "A 1.1 1.1 0 0 0 0 100 110 0 -0.3333333333 -0.25 0 0 1 1\n"
-              "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 1 2\n");
+              "Properties=species:S:1:pos:R:3:image:I:3:velo:R:3:forces:R:3:radius:R:1:masses:R:"
+              "1:id:I:1:type:I:1:name:S:1\n"
+              "X 3.1 3.1 0 0 0 0 102 112 0 -0.2 -0.1666666667 0 1 1 0 1 A\n"
+              "X 1.1 1.1 0 0 0 0 100 110 0 -0.3333333333 -0.25 0 0 1 1 1 A\n"
+              "X 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 1 2 2 Big\n");
     free(text);
 }
 
@@ -84,7 +84,7 @@ static void test_companions_follow_as_a_type_of_their_own(void **state) {
     int64_t size = 0;
     make(&particles);
     assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, &solvent_particles, 20, 0.5));
-    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_xyz, folder->path, &size));
     assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_json, folder->path, &size));
     assert_int_equal(mf_snapshot_type(&snapshot, 2), 1);
     assert_int_equal(mf_snapshot_type(&snapshot, 3), 2);
@@ -92,9 +92,9 @@ static void test_companions_follow_as_a_type_of_their_own(void **state) {
     mf_particles_clear(&particles);
     char *frames = temporary_folder_read(temporary_folder_file(folder, "trajectory.extxyz"));
     assert_contains(frames, "5\nLattice");
-    assert_contains(frames, "Big 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 1 2\n"
-                            "solvent 0.5 1 0 0 0 0 -1 7 0 0 0 0 0 1 3\n"
-                            "solvent 0.5 2 0 0 0 0 3 8 0 0 0 0 0 1 4\n");
+    assert_contains(frames, "X 0.1 4.1 0 10 1 0 101 111 0 -0.25 -0.2 0 0.5 1 2 2 Big\n"
+                            "X 0.5 1 0 0 0 0 -1 7 0 0 0 0 0 1 3 3 solvent\n"
+                            "X 0.5 2 0 0 0 0 3 8 0 0 0 0 0 1 4 3 solvent\n");
     char *text = temporary_folder_read(temporary_folder_file(folder, "step_000000020.json"));
     assert_contains(text, "\"count\": 3,");
     assert_contains(text, "\"image_x\": [0, 0, 10]");
@@ -204,13 +204,13 @@ static void test_extxyz_is_continued_behind_the_bytes_that_count(void **state) {
     make(&particles);
     assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, NULL, 20, 0.5));
     int64_t size = 0;
-    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_xyz, folder->path, &size));
     const int64_t first = size;
-    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_xyz, folder->path, &size));
     assert_int_equal(size, 2 * first);
-    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_xyz, folder->path, &size));
     size = first; // of a checkpoint after the first
-    assert_ok(mf_snapshot_write(&snapshot, &mf_format_xyz_snapshot, folder->path, &size));
+    assert_ok(mf_snapshot_write(&snapshot, &mf_snapshot_xyz, folder->path, &size));
     char *text = temporary_folder_read(temporary_folder_file(folder, "trajectory.extxyz"));
     assert_int_equal(strlen(text), 2 * first);
     assert_memory_equal(text, text + first, (size_t)first);
