@@ -288,7 +288,7 @@ LIBDIR ?= $(PREFIX)/lib
 .PHONY: install check-install
 install: all
 	install -d $(addprefix $(DESTDIR),$(PREFIX)/bin $(PREFIX)/include/mesofit $(LIBDIR)/pkgconfig \
-	    $(addprefix $(PREFIX)/share/,mesofit/plots man/man1 bash-completion/completions))
+	    $(addprefix $(PREFIX)/share/,mesofit/plots mesofit/lammps/debian/fmt man/man1 bash-completion/completions))
 	install $(PROGRAM) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 include/mesofit.h $(DESTDIR)$(PREFIX)/include
 	install -m 644 include/mesofit/*.h $(DESTDIR)$(PREFIX)/include/mesofit
@@ -298,6 +298,8 @@ install: all
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' mesofit.pc.in \
 	    >$(DESTDIR)$(LIBDIR)/pkgconfig/mesofit.pc
 	install -m 644 plots/*.gp $(DESTDIR)$(PREFIX)/share/mesofit/plots
+	install -m 644 share/lammps/*.* $(DESTDIR)$(PREFIX)/share/mesofit/lammps
+	install -m 644 share/lammps/debian/fmt/format.h $(DESTDIR)$(PREFIX)/share/mesofit/lammps/debian/fmt
 	install -m 644 $(MAN_PAGE) $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 $(COMPLETION) $(DESTDIR)$(PREFIX)/share/bash-completion/completions/mesofit
 

@@ -193,11 +193,11 @@ void PairMesofitTable::allocate()
 
 void PairMesofitTable::settings(int narg, char **arg)
 {
-  if (narg != 2) error->all(FLERR, "Illegal pair_style command: mesofit/table T seed");
+  if (narg != 2) error->all(FLERR, std::string("Illegal pair_style command: mesofit/table T seed"));
   temperature = utils::numeric(FLERR, arg[0], false, lmp);
   seed = utils::bnumeric(FLERR, arg[1], false, lmp);
-  if (temperature < 0.0) error->all(FLERR, "pair mesofit/table: temperature below 0");
-  if (seed < 0) error->all(FLERR, "pair mesofit/table: seed below 0");
+  if (temperature < 0.0) error->all(FLERR, std::string("pair mesofit/table: temperature below 0"));
+  if (seed < 0) error->all(FLERR, std::string("pair mesofit/table: seed below 0"));
 }
 
 /* ----------------------------------------------------------------------
@@ -207,7 +207,7 @@ void PairMesofitTable::settings(int narg, char **arg)
 void PairMesofitTable::coeff(int narg, char **arg)
 {
   if (narg < 4 || narg > 5)
-    error->all(FLERR, "Illegal pair_coeff command: I J file PHI [OMEGA] for mesofit/table");
+    error->all(FLERR, std::string("Illegal pair_coeff command: I J file PHI [OMEGA] for mesofit/table"));
   if (!allocated) allocate();
 
   int ilo, ihi, jlo, jhi, count = 0;
@@ -223,7 +223,7 @@ void PairMesofitTable::coeff(int narg, char **arg)
       setflag[i][j] = 1;
       count++;
     }
-  if (count == 0) error->all(FLERR, "Incorrect args for pair coefficients");
+  if (count == 0) error->all(FLERR, std::string("Incorrect args for pair coefficients"));
 }
 
 /* ----------------------------------------------------------------------
@@ -286,8 +286,8 @@ int PairMesofitTable::read_section(const std::string &file, const std::string &k
 void PairMesofitTable::init_style()
 {
   if (comm->ghost_velocity == 0)
-    error->all(FLERR, "Pair mesofit/table needs velocities of ghost atoms: comm_modify vel yes");
-  if (!atom->tag_enable) error->all(FLERR, "Pair mesofit/table needs atom ids");
+    error->all(FLERR, std::string("Pair mesofit/table needs velocities of ghost atoms: comm_modify vel yes"));
+  if (!atom->tag_enable) error->all(FLERR, std::string("Pair mesofit/table needs atom ids"));
   Pair::init_style();
 }
 
@@ -297,7 +297,7 @@ void PairMesofitTable::init_style()
 
 double PairMesofitTable::init_one(int i, int j)
 {
-  if (setflag[i][j] == 0) error->all(FLERR, "All pair coeffs are not set");
+  if (setflag[i][j] == 0) error->all(FLERR, std::string("All pair coeffs are not set"));
   potential[j][i] = potential[i][j];
   omega[j][i] = omega[i][j];
   const double cutoff = sqrt(sections[potential[i][j]].high);

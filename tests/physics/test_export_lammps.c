@@ -132,7 +132,8 @@ static double diffusion_of(const char *file, double *error) {
 
 /// False alarms as above. At this step LAMMPS moves up to 4 per cent faster: it takes friction at
 /// velocities of half a step ago.
-static void test_lammps_has_our_friction(void **state) {
+static void compare_friction(struct temporary_folder *folder, const char *lmp,
+                             const char *friction) {
     static struct run_program_result result;
     static const char scene[] =
         "{\"seed\": 3, \"box\": [4, 4, 4], \"particles\": {\"count\": 192}, \"time_step\": 0.01,\n"
@@ -140,17 +141,17 @@ static void test_lammps_has_our_friction(void **state) {
         "\"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"exponent\": 0.5},\n"
         "\"rdf\": {\"range\": 2, \"bins\": 100}, \"motion\": {\"lags\": 40, \"every\": 5},\n"
         "\"measure\": {\"equilibration\": 500, \"samples\": 500, \"every\": 10}}\n";
-    lammps_runs_skip_without("dpd/ext/tstat");
-    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    char command[256];
+    small_inputs_write(folder, "scene.json", scene, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "export", "out", "--engine", "lammps");
     run_program_assert_code(&result, 0);
-    assert_contains(result.err, "the lmp of this machine has it");
-    assert_int_equal(
-        system("cd lammps && lmp -in in.mesofit -var equilibration 500 -var steps 5000 "
-               "-var dump 5 >lmp.out 2>&1"),
-        0);
+    snprintf(command, sizeof command,
+             "cd lammps && %s -in in.mesofit -var friction %s -var equilibration 500 -var steps "
+             "5000 -var dump 5 >lmp.out 2>&1",
+             lmp, friction);
+    assert_int_equal(system(command), 0);
     double error;
     const double difference = lammps_runs_rdf_difference(1);
     const double temperature = lammps_runs_mean(1, &error);
@@ -164,10 +165,33 @@ static void test_lammps_has_our_friction(void **state) {
     assert_true(fabs(theirs - ours) < 4.5 * hypot(error, our_error) + 0.04 * ours);
 }
 
+static void test_lammps_has_our_friction(void **state) {
+    lammps_runs_skip_without("dpd/ext/tstat");
+    compare_friction(*state, "lmp", "dpd");
+}
+
+/// The pair style of share/lammps, with Debian's liblammps-dev as README there says.
+static void test_lammps_has_our_friction_by_our_pair_style(void **state) {
+    char command[2048];
+    if (system("pkg-config --exists liblammps 2>/dev/null && command -v mpicxx >/dev/null && "
+               "test -e /usr/include/lammps/pair.h") != 0) {
+        print_message("liblammps-dev or mpicxx is not installed\n");
+        skip();
+    }
+    snprintf(command, sizeof command,
+             "cd %s/share/lammps && mpicxx -O1 -Wall -Werror -DOMPI_SKIP_MPICXX -Idebian "
+             "-I/usr/include/lammps $(pkg-config --cflags liblammps) -o \"$OLDPWD/lmp_mesofit\" "
+             "lmp_mesofit.cpp pair_mesofit_table.cpp $(pkg-config --libs liblammps)",
+             run_program_sources());
+    assert_int_equal(system(command), 0);
+    compare_friction(*state, "../lmp_mesofit", "exact");
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {TEST(test_lammps_has_our_water),
-                                       TEST(test_lammps_has_our_friction)};
+                                       TEST(test_lammps_has_our_friction),
+                                       TEST(test_lammps_has_our_friction_by_our_pair_style)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -60,6 +60,7 @@ for program in "$prefix/bin/mesofit" "$moved/root/usr/bin/mesofit"; do
     [ -s run/figures/simulation.png ] || { echo "$program draws no figure"; exit 1; }
 done
 for place in "$prefix" "$moved/root/usr"; do
+    [ -s "$place/share/mesofit/lammps/pair_mesofit_table.cpp" ] || { echo "$place: no pair style for LAMMPS"; exit 1; }
     head -n 1 "$place/share/man/man1/mesofit.1" | grep -q '^\.TH MESOFIT 1 ' || { echo "$place: no man page"; exit 1; }
     bash -c ". '$place/share/bash-completion/completions/mesofit'; complete -p mesofit" >/dev/null
 done
