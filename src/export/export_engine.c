@@ -209,6 +209,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const struct export_error *error = &job->grids.error;
     const struct export_units *units = &job->units;
+    if (job->engine->versions)
+        fprintf(stream, "%s\n\n", job->engine->versions);
     fprintf(
         stream, "%s, for %s\n\nWritten by mesofit " MESOFIT_VERSION " from %s. Run it here:\n\n",
         model->title[0] ? model->title : "A result of mesofit", job->engine->title, model->folder);
@@ -264,6 +266,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
 
 static void print_result(const struct export_job *job, struct progress *to) {
     const struct export_error *error = &job->grids.error;
+    if (job->engine->versions)
+        mf_progress_print(to, "%s", job->engine->versions);
     if (job->model->warning[0])
         mf_progress_print(to, "mesofit: warning: %s", job->model->warning);
     mf_progress_print(to,

@@ -63,6 +63,7 @@ struct export_engine {
     const char *commands; ///< that run the folder, a line each
     /// Those of a job, or NULL: `commands`.
     const char *(*commands_of)(const struct export_job *job);
+    const char *versions; ///< of the engine that run the folder, said first; NULL: any
     const char *verified; ///< whether such folders were run: a sentence of the README
     int max_types;        ///< that it is written for
     bool one_cutoff;      ///< all its tables end at the same distance

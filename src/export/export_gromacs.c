@@ -326,9 +326,7 @@ static const char *commands_of(const struct export_job *job) {
 }
 
 static void explain(const struct export_job *job, FILE *stream) {
-    fprintf(stream,
-            "GROMACS reads tables up to version 2019. It has no DPD%s: its integrator sd "
-            "is a bath of each particle.\n%s\n",
+    fprintf(stream, "GROMACS has no DPD%s: its integrator sd is a bath of each particle.\n%s\n",
             export_model_has_friction(job->model) ? " and so no omega" : "",
             mf_export_dynamics_kept(job));
 }
@@ -343,7 +341,12 @@ const struct export_engine mf_export_gromacs = {
     .interpolation = &mf_export_grid_hermite,
     .bath = "integrator sd",
     .commands_of = commands_of,
-    .verified = "Such folders were checked against the manual of GROMACS, and not run.",
+    .versions =
+        "GROMACS up to 2019 runs this; 2020 and later refuse it, as their tables of pairs went "
+        "with the group scheme.",
+    .verified =
+        "Such folders were checked against the manual of GROMACS, and not run; of molecules, "
+        "bonds, angles and dihedrals alone were, with GROMACS 2022.",
     .max_types = COMPOSITION_MAX_TYPES,
     .one_cutoff = true,
     .pair_name = name_pair,

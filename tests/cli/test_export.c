@@ -265,6 +265,9 @@ static void test_gromacs_reads_the_potential(void **state) {
     small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
     small_scenes_simulate(&result, "out");
     run_export("gromacs", "gromacs");
+    char *readme = temporary_folder_read("gromacs/README");
+    assert_int_equal(strncmp(readme, "GROMACS up to 2019 runs this", 28), 0);
+    free(readme);
     init(&rows);
     FILE *file = open_text("gromacs/table_A_A.xvg");
     char line[256];
