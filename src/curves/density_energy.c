@@ -199,7 +199,7 @@ static double formula_end(const void *parameters) {
 #define FORMULA(member) .offset = offsetof(struct formula, member)
 static const struct field formula_fields[] = {
     {"formula", FIELD_TEXT, FORMULA(formula), .required = true, .unit = "",
-     .help = "of rho, with + - * / ^ exp"},
+     .help = "of rho, with +-*/^ exp,sqrt,log,tanh,erf,min,max"},
     {"minimum", FIELD_NUMBER, FORMULA(minimum), .initial = 0, ANY_NUMBER, .unit = "",
      .help = "rho below which it is a straight line"},
     {"maximum", FIELD_NUMBER, FORMULA(maximum), .required = true, ANY_NUMBER, .unit = "",

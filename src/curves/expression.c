@@ -6,7 +6,19 @@
 int mf_expression_arguments(enum expression_kind kind) {
     if (kind == EXPRESSION_CONSTANT || kind == EXPRESSION_DISTANCE)
         return 0;
-    return kind == EXPRESSION_EXP ? 1 : 2;
+    return mf_expression_is_function(kind) ? 1 : 2;
+}
+
+bool mf_expression_is_function(enum expression_kind kind) {
+    return kind == EXPRESSION_EXP || kind == EXPRESSION_LOG || kind == EXPRESSION_TANH ||
+           kind == EXPRESSION_ERF;
+}
+
+double mf_expression_function(enum expression_kind kind, double x) {
+    return kind == EXPRESSION_EXP    ? exp(x)
+           : kind == EXPRESSION_LOG  ? log(x)
+           : kind == EXPRESSION_TANH ? tanh(x)
+                                     : erf(x);
 }
 
 int mf_expression_begin(const struct expression *expression, int end) {
@@ -94,8 +106,21 @@ static struct dual raise(struct dual base, double exponent) {
                          exponent * mf_expression_power(base.value, exponent - 1) * base.slope};
 }
 
+static struct dual apply(enum expression_kind kind, struct dual x) {
+    const double value = mf_expression_function(kind, x.value);
+    const double slope = kind == EXPRESSION_EXP    ? value
+                         : kind == EXPRESSION_LOG  ? 1 / x.value
+                         : kind == EXPRESSION_TANH ? 1 - value * value
+                                                   : M_2_SQRTPI * exp(-x.value * x.value);
+    return (struct dual){value, slope * x.slope};
+}
+
 static struct dual combine(enum expression_kind kind, struct dual a, struct dual b) {
     switch (kind) {
+    case EXPRESSION_LESSER:
+        return b.value < a.value ? b : a;
+    case EXPRESSION_GREATER:
+        return b.value > a.value ? b : a;
     case EXPRESSION_ADD:
         return (struct dual){a.value + b.value, a.slope + b.slope};
     case EXPRESSION_SUBTRACT:
@@ -118,9 +143,8 @@ double mf_expression_value(const struct expression *expression, double r, double
             stack[top++] = (struct dual){node->constant, 0};
         } else if (node->kind == EXPRESSION_DISTANCE) {
             stack[top++] = (struct dual){r, 1};
-        } else if (node->kind == EXPRESSION_EXP) {
-            const double value = exp(stack[top - 1].value);
-            stack[top - 1] = (struct dual){value, value * stack[top - 1].slope};
+        } else if (mf_expression_is_function(node->kind)) {
+            stack[top - 1] = apply(node->kind, stack[top - 1]);
         } else {
             top--;
             stack[top - 1] = combine(node->kind, stack[top - 1], stack[top]);
@@ -159,9 +183,21 @@ static struct interval raise_interval(struct interval a, double exponent) {
     return around(low, high, across ? 0 : low, high);
 }
 
+/// All functions grow.
+static struct interval apply_to_interval(enum expression_kind kind, struct interval x) {
+    if (kind == EXPRESSION_LOG && x.low <= 0)
+        return nowhere;
+    return (struct interval){mf_expression_function(kind, x.low),
+                             mf_expression_function(kind, x.high)};
+}
+
 static struct interval combine_intervals(enum expression_kind kind, struct interval a,
                                          struct interval b) {
     switch (kind) {
+    case EXPRESSION_LESSER:
+        return (struct interval){fmin(a.low, b.low), fmin(a.high, b.high)};
+    case EXPRESSION_GREATER:
+        return (struct interval){fmax(a.low, b.low), fmax(a.high, b.high)};
     case EXPRESSION_ADD:
         return (struct interval){a.low + b.low, a.high + b.high};
     case EXPRESSION_SUBTRACT:
@@ -185,8 +221,8 @@ static bool piece_is_finite(const struct expression *expression, struct interval
             stack[top++] = (struct interval){node->constant, node->constant};
         } else if (node->kind == EXPRESSION_DISTANCE) {
             stack[top++] = r;
-        } else if (node->kind == EXPRESSION_EXP) {
-            stack[top - 1] = (struct interval){exp(stack[top - 1].low), exp(stack[top - 1].high)};
+        } else if (mf_expression_is_function(node->kind)) {
+            stack[top - 1] = apply_to_interval(node->kind, stack[top - 1]);
         } else {
             top--;
             stack[top - 1] = combine_intervals(node->kind, stack[top - 1], stack[top]);

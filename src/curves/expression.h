@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Formulas of the distance r as data: constants, r, + − × /, powers and exp.
+/// @file Formulas of the distance r as data: constants, r, + − × /, powers and some functions.
 ///
 /// The nodes of a formula stand in postfix order: the arguments of a node come before it, so that
 /// the last node is the whole, and a part of the formula is a stretch of the array. Its length is
@@ -20,7 +20,11 @@ enum expression_kind {
     EXPRESSION_DIVIDE,
     EXPRESSION_POWER, ///< its exponent is a constant, the node before it
     EXPRESSION_EXP,
-    EXPRESSION_KINDS
+    EXPRESSION_LOG, ///< natural
+    EXPRESSION_TANH,
+    EXPRESSION_ERF,
+    EXPRESSION_LESSER, ///< min and max of two
+    EXPRESSION_GREATER,
 };
 
 enum { EXPRESSION_MAX = 64 }; ///< nodes
@@ -52,8 +56,13 @@ bool mf_expression_is_exponent(const struct expression *expression, int node);
 /// is 0 at r_c. NaN of another negative base unless the exponent is whole.
 double mf_expression_power(double base, double exponent);
 
-/// Value at r, and, unless it is NULL, its slope by forward differentiation.
-/// Threads: any number at once. Tested: test_expression.
+/// Whether a node is a function of one argument, and its value.
+bool mf_expression_is_function(enum expression_kind kind);
+double mf_expression_function(enum expression_kind kind, double x);
+
+/// Value at r, and, unless it is NULL, its slope by forward differentiation; where both arguments
+/// of min or max are equal, that of the first. Threads: any number at once. Tested:
+/// test_expression.
 double mf_expression_value(const struct expression *expression, double r, double *slope);
 
 /// Whether the formula is finite everywhere in low ≤ r ≤ high: intervals of this range, as many as

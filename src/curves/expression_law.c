@@ -93,7 +93,8 @@ static double omega_value(const void *parameters, double r) {
          MEMBER(formula),                                                                          \
          .required = true,                                                                         \
          .unit = "",                                                                               \
-         .help = "with + - * / ^ exp, as 4*(1/r^12 - 1/r^6), in units of the"                      \
+         .help = "with +-*/^ exp,sqrt,log,tanh,erf,min,max, as 4*(1/r^12 - 1/r^6), in units "      \
+                 "of the"                                                                          \
                  " file"},                                                                         \
             {"inner_cutoff", FIELD_NUMBER,       MEMBER(inner_cutoff), .initial = 0,               \
              .minimum = 0,   .maximum = DBL_MAX, .unit = "lambda",     .help = inner_help},        \

@@ -66,6 +66,31 @@ static enum status read_parentheses(struct reader *reader) {
     return take(reader, ")") ? STATUS_OK : fault(reader, "a \")\" is missing");
 }
 
+/// Functions by their names; the square root is a power.
+static const struct function {
+    const char *name;
+    enum expression_kind kind;
+} functions[] = {{"exp", EXPRESSION_EXP},    {"sqrt", EXPRESSION_POWER}, {"log", EXPRESSION_LOG},
+                 {"tanh", EXPRESSION_TANH},  {"erf", EXPRESSION_ERF},    {"min", EXPRESSION_LESSER},
+                 {"max", EXPRESSION_GREATER}};
+
+static enum status read_function(struct reader *reader, const struct function *function) {
+    const bool root = function->kind == EXPRESSION_POWER;
+    if (!take(reader, "("))
+        return fault(reader, "expected \"(\" after the name of a function");
+    TRY(read_sum(reader));
+    if (!root && mf_expression_arguments(function->kind) == 2) {
+        if (!take(reader, ","))
+            return fault(reader, "expected \",\" and a second argument");
+        TRY(read_sum(reader));
+    }
+    if (!take(reader, ")"))
+        return fault(reader, "a \")\" is missing");
+    if (root)
+        TRY(push(reader, EXPRESSION_CONSTANT, 0.5));
+    return push(reader, function->kind, 0);
+}
+
 static enum status read_name(struct reader *reader) {
     size_t length = 0;
     while (isalnum((unsigned char)reader->at[length]) || reader->at[length] == '_')
@@ -74,13 +99,14 @@ static enum status read_name(struct reader *reader) {
         reader->at += length;
         return push(reader, EXPRESSION_DISTANCE, 0);
     }
-    if (length != 3 || strncmp(reader->at, "exp", 3) != 0)
-        return fault(reader, "unknown name: only %s and exp(...) are allowed");
-    reader->at += length;
-    if (!take(reader, "("))
-        return fault(reader, "expected \"(\" after exp");
-    TRY(read_parentheses(reader));
-    return push(reader, EXPRESSION_EXP, 0);
+    for (size_t k = 0; k < sizeof functions / sizeof *functions; k++)
+        if (length == strlen(functions[k].name) &&
+            strncmp(reader->at, functions[k].name, length) == 0) {
+            reader->at += length;
+            return read_function(reader, &functions[k]);
+        }
+    return fault(reader,
+                 "unknown name: only %s, exp, sqrt, log, tanh, erf, min and max are allowed");
 }
 
 static enum status read_atom(struct reader *reader) {
@@ -91,8 +117,8 @@ static enum status read_atom(struct reader *reader) {
         return read_number(reader);
     if (isalpha((unsigned char)*reader->at))
         return read_name(reader);
-    return fault(reader, *reader->at ? "expected a number, %s, exp or \"(\""
-                                     : "it ends where a number, %s, exp or \"(\" is needed");
+    return fault(reader, *reader->at ? "expected a number, %s, a function or \"(\""
+                                     : "it ends where a number, %s, a function or \"(\" is needed");
 }
 
 /// What was read since node `begin` becomes one constant, if it is a number.

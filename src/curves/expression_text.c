@@ -146,9 +146,25 @@ static void print_power(struct printer *printer, int end) {
     append(printer, "%s", after[printer->style]);
 }
 
-static void print_exp(struct printer *printer, int end) {
+/// In each style.
+static const char *name_of(enum expression_kind kind, enum expression_style style) {
+    static const char *const names[][3] = {[EXPRESSION_EXP] = {"exp", "\\exp", "exp"},
+                                           [EXPRESSION_LOG] = {"log", "\\ln", "log"},
+                                           [EXPRESSION_TANH] = {"tanh", "\\tanh", "tanh"},
+                                           [EXPRESSION_ERF] = {"erf", "\\operatorname{erf}", "erf"},
+                                           [EXPRESSION_LESSER] = {"min", "\\min", "fmin"},
+                                           [EXPRESSION_GREATER] = {"max", "\\max", "fmax"}};
+    return names[kind][style];
+}
+
+static void print_function(struct printer *printer, int end) {
     const bool latex = printer->style == EXPRESSION_LATEX;
-    append(printer, latex ? "\\exp\\left(" : "exp(");
+    const enum expression_kind kind = node_of(printer, end)->kind;
+    append(printer, "%s%s", name_of(kind, printer->style), latex ? "\\left(" : "(");
+    if (mf_expression_arguments(kind) == 2) {
+        print(printer, first_argument(printer, end), false);
+        append(printer, ", ");
+    }
     print(printer, end - 1, false);
     append(printer, latex ? "\\right)" : ")");
 }
@@ -174,11 +190,11 @@ static void print(struct printer *printer, int end, bool minus_is_printed) {
     case EXPRESSION_POWER:
         print_power(printer, end);
         break;
-    case EXPRESSION_EXP:
-        print_exp(printer, end);
+    case EXPRESSION_DISTANCE:
+        append(printer, "r");
         break;
     default:
-        append(printer, "r");
+        print_function(printer, end);
     }
 }
 

@@ -8,9 +8,9 @@
 enum { EXPRESSION_TEXT_SIZE = 4096 };
 
 /// Read a formula such as "4*(1/r^12 - 1/r^6)" or "12.5*(1 - r/0.99)^2": numbers, r, + - * / ^,
-/// exp(…), parentheses. "**" is "^" as well; − binds less than ^, and ^ to the right. What stands
-/// after ^ must be a number.
-/// Fails: BAD_INPUT, with the place, counted from 1, of what is wrong. Tested: test_expression.
+/// exp, sqrt, log (natural), tanh, erf, min(…, …), max, parentheses. "**" is "^" as well; − binds
+/// less than ^, and ^ to the right. What stands after ^ must be a number. Fails: BAD_INPUT, with
+/// the place, counted from 1, of what is wrong. Tested: test_expression.
 enum status mf_expression_parse(struct expression *expression, const char *text) MUST_USE;
 
 /// The same of a variable that is not called r. Tested: test_weight.
@@ -20,7 +20,7 @@ enum status mf_expression_parse_of(struct expression *expression, const char *te
 enum expression_style {
     EXPRESSION_PLAIN, ///< as mf_expression_parse reads it
     EXPRESSION_LATEX,
-    EXPRESSION_C, ///< an expression of the double r; with pow and exp of math.h
+    EXPRESSION_C, ///< an expression of the double r; with pow, exp, fmin and others of math.h
 };
 
 /// Print a formula into EXPRESSION_TEXT_SIZE characters, its constants with as few digits as give

@@ -199,7 +199,7 @@ static void test_what_cannot_be_is_refused_in_one_line(void **state) {
          "\"maximum\": -1",
          {"many_body.shell.energy: the minimum 0 is not below the maximum -1", NULL}},
         {"rho^2/10", "1/(rho - 1)", {"many_body.shell.energy: the formula", "near rho = "}},
-        {"rho^2/10", "r^2", {"unknown name: only rho and exp(...) are allowed", NULL}},
+        {"rho^2/10", "r^2", {"unknown name: only rho, exp, sqrt,", NULL}},
         {"\"b\": 25, \"cutoff\": 0.75",
          "\"b\": 25, \"cutoff\": 0.8",
          {"many_body.crowd.energy: the cutoff 0.8 is not that of the weight, 0.75", NULL}},

@@ -71,6 +71,53 @@ static void test_expression_parse_obeys_the_rules_of_arithmetic_when_evaluated(v
     assert_int_equal(mf_expression_depth(&nested), 4);
 }
 
+/// Values of tables; slopes by differences, on either side of the kinks of min and max.
+static void test_expression_knows_functions_when_it_is_evaluated(void **state) {
+    (void)state;
+    assert_close(value("sqrt(2*r)", 8), 4, 1e-15);
+    assert_close(value("log(r)", 10), 2.302585092994046, 1e-15);
+    assert_close(value("tanh(r/2)", 1), 0.46211715726000976, 1e-15);
+    assert_close(value("erf(r)", 0.5), 0.5204998778130465, 1e-15);
+    assert_close(value("min(r, 2 - r)", 1.5), 0.5, 0);
+    assert_close(value("max(r, max(1, 2*r))", 0.75), 1.5, 0);
+    assert_close(value("2^log(1)", 3), 1, 0);
+    static const char *const formulas[] = {"sqrt(1 + r^2)", "log(1 + r)*r",    "tanh(3*r - 2)",
+                                           "erf(2*r)/r",    "min(r^2, 1 - r)", "max(r^2, 1 - r)"};
+    for (size_t k = 0; k < sizeof formulas / sizeof *formulas; k++) {
+        struct expression expression = parse(formulas[k]);
+        for (double r = 0.2; r < 1; r += 0.1) {
+            const double step = 1e-5;
+            double slope;
+            mf_expression_value(&expression, r, &slope);
+            assert_close(slope,
+                         (value(formulas[k], r + step) - value(formulas[k], r - step)) / (2 * step),
+                         1e-8);
+        }
+        assert_true(mf_expression_is_finite(&expression, 0.1, 2, 100, NULL));
+        assert_true(mf_expression_scale(&expression, 0.34, 4.184));
+        assert_close(mf_expression_value(&expression, 0.34 * 0.7, NULL),
+                     4.184 * value(formulas[k], 0.7), 1e-13);
+    }
+    const struct expression logarithm = parse("log(r - 0.5)"), kink = parse("1/max(r, 0.1)");
+    double where;
+    assert_false(mf_expression_is_finite(&logarithm, 0, 1, 100, &where));
+    assert_false(mf_expression_is_finite(&logarithm, 0.4, 1, 100, NULL));
+    assert_true(mf_expression_is_finite(&logarithm, 0.6, 1, 100, NULL));
+    assert_true(mf_expression_is_finite(&kink, 0, 1, 100, NULL));
+}
+
+static void test_expression_print_writes_functions_in_each_style(void **state) {
+    (void)state;
+    static const char text[] = "max(erf(2*r), min(tanh(r), log(r + 1)))";
+    assert_prints(text, EXPRESSION_PLAIN, text);
+    assert_prints(text, EXPRESSION_C, "fmax(erf(2.0*r), fmin(tanh(r), log(r + 1.0)))");
+    assert_prints(text, EXPRESSION_LATEX,
+                  "\\max\\left(\\operatorname{erf}\\left(2 \\, r\\right), "
+                  "\\min\\left(\\tanh\\left(r\\right), \\ln\\left(r + 1\\right)\\right)\\right)");
+    assert_prints("sqrt(r)", EXPRESSION_PLAIN, "r^0.5");
+    assert_simplifies("log(1)*r + min(2, 3)", "2");
+}
+
 static void test_expression_parse_names_the_place_when_a_formula_is_wrong(void **state) {
     (void)state;
     static const char *const wrong[][2] = {
@@ -80,11 +127,14 @@ static void test_expression_parse_names_the_place_when_a_formula_is_wrong(void *
         {"4*x", "character 3: unknown name"},
         {"2 r", "character 3: expected an operator"},
         {"2^r", "character 3: an exponent must be a number"},
-        {"exp r", "character 5: expected \"(\" after exp"},
+        {"exp r", "character 5: expected \"(\" after the name of a function"},
         {"1e999", "character 1: not a decimal number"},
         {"0x10", "character 1: not a decimal number"},
         {"r)", "character 2: expected an operator"},
-        {"3 + @", "character 5: expected a number, r, exp or \"(\""},
+        {"min(r)", "character 6: expected \",\" and a second argument"},
+        {"tanh(r, 1)", "character 7: a \")\" is missing"},
+        {"sin(r)", "unknown name: only r, exp, sqrt, log, tanh, erf, min and max are allowed"},
+        {"3 + @", "character 5: expected a number, r, a function or \"(\""},
     };
     struct expression expression;
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
@@ -282,6 +332,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_expression_scale_tells_the_same_formula_in_other_units),
         cmocka_unit_test(test_expression_parse_obeys_the_rules_of_arithmetic_when_evaluated),
+        cmocka_unit_test(test_expression_knows_functions_when_it_is_evaluated),
+        cmocka_unit_test(test_expression_print_writes_functions_in_each_style),
         cmocka_unit_test(test_expression_parse_names_the_place_when_a_formula_is_wrong),
         cmocka_unit_test(test_expression_print_is_what_a_person_writes_when_parsed),
         cmocka_unit_test(test_expression_simplify_leaves_nothing_neutral_when_done),
