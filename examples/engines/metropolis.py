@@ -3,17 +3,16 @@
 """An engine for `mesofit fit run.json --engine "python3 metropolis.py"`: Metropolis moves of single beads of one type.
 
 It reads engine.json and potential.tsv in the folder where it is started, and leaves the frames and last.npy, from
-which the next piece goes on. A "time step" is a sweep: one move of every bead.
+which the next piece goes on. A "time step" is a sweep: one move of every bead. The run file is in reduced units.
 """
 import json
 import os
 
 import numpy
 
-BEADS = 200
-
 asked = json.load(open("engine.json"))
 box = numpy.array(asked["box"])
+BEADS = sum(asked["beads"].values())
 r, phi, _ = numpy.loadtxt("potential.tsv", unpack=True)
 random = numpy.random.default_rng(asked["seed"])
 

@@ -11,15 +11,16 @@ import os
 import numpy
 import openmm
 
-BEADS = {"A": (2744, 18.015)}  # number and mass [u] of each type, in the order of the scene
+MASS = {"A": 18.015}  # of each type [u]
 TIME_STEP = 0.01  # ps
 PLATFORM = "Reference"  # "CUDA", "OpenCL" or "CPU" where there is one
 
 GAS = 8.31446261815324e-3  # kJ/mol/K
 asked = json.load(open("engine.json"))
 box = numpy.array(asked["box"])
-types = numpy.repeat(list(BEADS), [count for count, _ in BEADS.values()])
-mass = numpy.repeat([mass for _, mass in BEADS.values()], [count for count, _ in BEADS.values()])
+BEADS = asked["beads"]  # how many of each type
+types = numpy.repeat(list(BEADS), list(BEADS.values()))
+mass = [MASS[name] for name in types]
 
 
 def pair_force(name, a, b):

@@ -41,12 +41,12 @@ class Piece:
         self.folder = Path()
         self.asked: dict[str, Any] = {}
         self.before: Path | None = None
-        self._physical = False
+        self._units = ""
 
     @classmethod
-    def _at(cls, folder: Path, physical: bool) -> "Piece":
+    def _at(cls, folder: Path, units: str) -> "Piece":
         piece = cls()
-        piece.folder, piece._physical = folder, physical
+        piece.folder, piece._units = folder, units
         piece.asked = json.loads((folder / "engine.json").read_text())
         before = piece.asked.get("before")
         piece.before = (folder / before).resolve() if before else None
@@ -99,7 +99,7 @@ class Piece:
         edges = np.append(box, np.ones(3 - len(box)))
         lattice = " ".join("%.12g" % x for x in np.diag(edges).ravel())
         head = (f'{places.shape[1]}\nLattice="{lattice}" Properties=species:S:1:pos:R:3 '
-                f'Units={"nm-ps" if self._physical else "lj"}\n')
+                f'{self._units}\n')
         (self.folder / "sample.json").write_text(json.dumps(numbers))
         with (self.folder / "partial").open("w") as out:
             for frame in places[:wanted]:
@@ -174,7 +174,9 @@ class Inversion:
     def pieces(self) -> list[Piece]:
         """What is asked for now: one piece of each replica that has not been told."""
         used = json.loads((self._place.path / "used.json").read_text())
-        return [piece for piece in (Piece._at(path, "units" in used) for path in self._waiting())
+        system = used.get("units", {}).get("system", "lj")
+        units = "" if system == "angstrom-fs" else f"Units={system}"  # Å are those of the format
+        return [piece for piece in (Piece._at(path, units) for path in self._waiting())
                 if not piece.told]
 
     def go_on(self) -> None:

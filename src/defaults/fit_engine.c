@@ -6,28 +6,49 @@
 
 #include <string.h>
 
+#define NAMES_OF_ENGINE "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+-_."
+
+/// A path is a word of a script and of LAMMPS.
+static bool is_plain(const char *path) {
+    bool plain = true;
+    for (; *path; path++)
+        plain = plain && (unsigned char)*path >= ' ' && strchr("'\"$`\\", *path) == NULL;
+    return plain;
+}
+
+/// The types of the scene and their names; beads without a name are called A.
+static int list_types(const struct fit_file *fit, const char *name[COMPOSITION_MAX_TYPES + 1]) {
+    const struct composition *composition = &fit->scene.setup.composition;
+    const int types = composition->types > 0 ? composition->types : 1;
+    for (int type = 0; type < types; type++)
+        name[type] =
+            composition->types > 0 && composition->name[type][0] ? composition->name[type] : "A";
+    name[types] = NULL;
+    return types;
+}
+
+/// Note that the engine calls a type of the scene so.
+static void name_type(struct json_object *types, const char *key, char *called) {
+    if (called[0])
+        mf_json_fault(types, key, "\"%s\" is it already", called);
+    if (strspn(key, NAMES_OF_ENGINE) != strlen(key) || strlen(key) >= COMPOSITION_NAME_SIZE)
+        mf_json_fault(types, key, "expected at most %d letters, digits and any of + - _ .",
+                      COMPOSITION_NAME_SIZE - 1);
+    snprintf(called, COMPOSITION_NAME_SIZE, "%s", key);
+}
+
 /// What the types are called there: an object of names of the engine, each with one of ours.
 static void read_types(struct fit_file *fit, struct json_object *object) {
-    const struct composition *composition = &fit->scene.setup.composition;
     struct json_object types = mf_json_child(object, "types", false);
     if (types.item == NULL)
         return;
-    const char *known[COMPOSITION_MAX_TYPES + 1] = {NULL}, *key;
-    for (int type = 0; type < composition->types; type++)
-        known[type] = composition->name[type];
+    const char *known[COMPOSITION_MAX_TYPES + 1], *key;
+    const int count = list_types(fit, known);
     for (size_t n = 0; (key = mf_json_key(&types, n)) != NULL; n++) {
         const char *name = mf_json_choice(&types, key, known, NULL);
-        for (int type = 0; name && type < composition->types; type++) {
-            if (strcmp(name, composition->name[type]) != 0)
-                continue;
-            if (fit->engine.type[type][0])
-                mf_json_fault(&types, key, "\"%s\" is \"%s\" already", name,
-                              fit->engine.type[type]);
-            if (strlen(key) >= sizeof fit->engine.type[type])
-                mf_json_fault(&types, key, "expected a name of at most %zu letters",
-                              sizeof fit->engine.type[type] - 1);
-            snprintf(fit->engine.type[type], sizeof fit->engine.type[type], "%s", key);
-        }
+        for (int type = 0; name && type < count; type++)
+            if (strcmp(name, known[type]) == 0)
+                name_type(&types, key, fit->engine.type[type]);
     }
     mf_json_finish(&types);
 }
@@ -47,19 +68,22 @@ void mf_fit_engine_read(struct fit_file *fit, struct json_object *root) {
         mf_json_fault(&object, "input", "it is for the engine \"lammps\"");
     if (engine->input[0] && engine->time_step > 0)
         mf_json_fault(&object, "time_step", "the \"input\" sets it");
+    if (!is_plain(engine->input) || !is_plain(engine->frames))
+        mf_json_fault(&object, NULL, "a name of a file may have no quotes, $, ` or \\");
     mf_json_finish(&object);
 }
 
 void mf_fit_engine_write(const struct fit_file *fit, struct json_writer *writer) {
-    const struct composition *composition = &fit->scene.setup.composition;
+    const char *name[COMPOSITION_MAX_TYPES + 1];
+    const int count = list_types(fit, name);
     if (fit->engine.kind == ENGINE_NONE)
         return;
     mf_json_begin(writer, "engine");
     mf_json_write_fields(writer, mf_sampling_engine_fields, &fit->engine);
     mf_json_begin(writer, "types");
-    for (int type = 0; type < composition->types; type++)
+    for (int type = 0; type < count; type++)
         if (fit->engine.type[type][0])
-            mf_json_write_text(writer, fit->engine.type[type], composition->name[type]);
+            mf_json_write_text(writer, fit->engine.type[type], name[type]);
     mf_json_end(writer);
     mf_json_end(writer);
 }
@@ -77,6 +101,9 @@ enum status mf_fit_engine_check(const struct fit_file *fit, const char *file) {
                             "\"relative-entropy\"");
     if (mf_fit_states_count(fit) > 1)
         return refuse(file, "of several \"states\" each would be a system of its own; fit one");
+    if (fit->engine.kind == ENGINE_COMMAND && fit->problem.bonded > 0)
+        return refuse(file, "a command is given potentials of pairs alone; bonds, angles and "
+                            "dihedrals are found with \"lammps\" or by mesofit itself");
     if (mf_many_body_find(setup->interaction, setup->interactions))
         return refuse(file, "local densities (\"many_body\") are sampled by mesofit alone");
     return STATUS_OK;

@@ -8,6 +8,7 @@
 
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 static const struct engine_tongue *const tongues[] = {
     [ENGINE_LAMMPS] = &mf_engine_lammps, [ENGINE_COMMAND] = &mf_engine_command};
@@ -50,8 +51,8 @@ static enum status explain(const struct engine_run *run, enum status status, con
         reason && run->tongue->blames_potential && run->tongue->blames_potential(reason);
     if (reason)
         return mf_status_fail(unstable ? STATUS_UNSTABLE : STATUS_IO,
-                              "--engine: %s: %s; all it said is in engine.log there", folder,
-                              reason);
+                              "--engine: %s: %s; the end of what it said is in engine.log there",
+                              folder, reason);
     return mf_status_prefix(STATUS_IO, "--engine: %s", folder);
 }
 
@@ -84,9 +85,32 @@ static enum status write_script(const struct engine_run *run, const struct engin
                           "#!/bin/sh\n# sh run.sh COMMAND: what --engine COMMAND runs here\n"
                           "cd \"$(dirname \"$0\")\" && exec \"$@\"");
     for (size_t k = 0; words[k]; k++)
-        length += snprintf(script + length, sizeof script - (size_t)length, " %s", words[k]);
+        length += snprintf(script + length, sizeof script - (size_t)length, " '%s'", words[k]);
     snprintf(script + length, sizeof script - (size_t)length, "\n");
     return mf_engine_write_text(folder, "run.sh", script);
+}
+
+enum { ASKED_SIZE = 256 };
+
+/// What tells one piece from another of the same folder, as the two of a verification.
+static void describe(const struct engine_piece *piece, char asked[ASKED_SIZE]) {
+    snprintf(asked, ASKED_SIZE, "seed %llu, lead %llu, frames %llu, every %llu, %s\n",
+             (unsigned long long)piece->seed, (unsigned long long)piece->lead,
+             (unsigned long long)piece->frames, (unsigned long long)piece->every,
+             piece->fresh ? "from the beginning" : "from the piece before");
+}
+
+/// Whether a folder is that of this piece.
+static bool is_of(const char *folder, const struct engine_piece *piece) {
+    char path[OUTPUT_PATH_SIZE], asked[ASKED_SIZE], there[ASKED_SIZE] = "";
+    mf_engine_path(folder, "asked", path);
+    FILE *file = fopen(path, "r");
+    if (file == NULL)
+        return false;
+    const size_t length = fread(there, 1, sizeof there - 1, file);
+    fclose(file);
+    describe(piece, asked);
+    return length == strlen(asked) && memcmp(there, asked, length) == 0;
 }
 
 static enum status write_piece(struct engine_run *run, const struct engine_piece *piece,
@@ -94,7 +118,10 @@ static enum status write_piece(struct engine_run *run, const struct engine_piece
     TRY(prepare(run, piece));
     TRY(mf_engine_folder_make(run->folder, folder));
     TRY(run->tongue->write(run, piece, folder));
-    return write_script(run, piece, folder);
+    TRY(write_script(run, piece, folder));
+    char asked[ASKED_SIZE];
+    describe(piece, asked);
+    return mf_engine_write_text(folder, "asked", asked);
 }
 
 /// Whether a piece that somebody else runs is there.
@@ -105,8 +132,7 @@ static bool has_frames(const struct engine_run *run, const char *folder) {
     return stat(path, &found) == 0;
 }
 
-/// Add a line to the list of the folders that wait for their frames; NULL: begin it.
-static enum status list_waiting(struct engine_run *run, const char *folder) {
+enum status mf_engine_wait(struct engine_run *run, const char *folder) {
     char path[OUTPUT_PATH_SIZE];
     mf_engine_path(run->folder, "engine/waiting", path);
     pthread_mutex_lock(&run->lock);
@@ -123,16 +149,30 @@ static enum status list_waiting(struct engine_run *run, const char *folder) {
 /// Of who runs the pieces elsewhere: what is there already stays.
 static enum status announce(void *context, const struct engine_piece *piece) {
     struct engine_run *run = context;
-    char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE];
-    struct stat found;
+    char folder[OUTPUT_PATH_SIZE];
     mf_engine_folder(run, piece->replica, piece->number, folder);
-    mf_engine_path(folder, "run.sh", path);
-    TRY(stat(path, &found) == 0 ? prepare(run, piece) : write_piece(run, piece, folder));
-    return has_frames(run, folder) ? STATUS_OK : list_waiting(run, folder);
+    TRY(is_of(folder, piece) ? prepare(run, piece) : write_piece(run, piece, folder));
+    return has_frames(run, folder) ? STATUS_OK : mf_engine_wait(run, folder);
 }
 
-static enum status begin(void *context, const struct engine_piece *piece, void **frames) {
+/// A piece whose predecessor is gone, as after a kill, begins anew, and equilibrates for as long as
+/// it samples besides.
+static struct engine_piece whole(const struct engine_run *run, const struct engine_piece *piece) {
+    struct engine_piece own = *piece;
+    char before[OUTPUT_PATH_SIZE];
+    if (piece->fresh)
+        return own;
+    mf_engine_folder(run, piece->replica, piece->number - 1, before);
+    if (access(before, F_OK) != 0) {
+        own.fresh = true;
+        own.lead += own.frames * own.every;
+    }
+    return own;
+}
+
+static enum status begin(void *context, const struct engine_piece *asked, void **frames) {
     struct engine_run *run = context;
+    const struct engine_piece own = whole(run, asked), *piece = &own;
     const uint64_t keep = (uint64_t)run->settings->keep;
     char folder[OUTPUT_PATH_SIZE], old[OUTPUT_PATH_SIZE];
     mf_engine_folder(run, piece->replica, piece->number, folder);
@@ -144,7 +184,11 @@ static enum status begin(void *context, const struct engine_piece *piece, void *
         TRY(write_piece(run, piece, folder));
         TRY(run_command(run, piece, folder));
     }
-    TRY(mf_engine_frames_open(run, piece, folder, (struct engine_frames **)frames));
+    const enum status status =
+        mf_engine_frames_open(run, piece, folder, (struct engine_frames **)frames);
+    if (status != STATUS_OK && run->later)
+        (void)mf_engine_wait(run, folder);
+    TRY(status);
     if (run->later || piece->number <= keep)
         return STATUS_OK;
     mf_engine_folder(run, piece->replica, piece->number - keep, old);
@@ -153,10 +197,7 @@ static enum status begin(void *context, const struct engine_piece *piece, void *
 
 static enum status open_engine(const char *command, const struct fit_file *fit, const char *folder,
                                bool resume, const struct sampling_engine **engine) {
-    char own[OUTPUT_PATH_SIZE];
-    mf_engine_path(folder, "engine", own);
-    if (!resume)
-        TRY(mf_engine_folder_remove(own)); // of an earlier fit
+    TRY(mf_engine_folder_begin(folder, resume));
     struct engine_run *run = mf_memory_zeroed(1, sizeof *run);
     if (run == NULL)
         return STATUS_NO_MEMORY;
@@ -178,10 +219,7 @@ static enum status open_engine(const char *command, const struct fit_file *fit, 
                                  .next = mf_engine_frames_next,
                                  .end = mf_engine_frames_close};
     *engine = &run->engine;
-    if (!run->later)
-        return STATUS_OK;
-    mkdir(own, 0777);
-    return list_waiting(run, NULL);
+    return run->later ? mf_engine_wait(run, NULL) : STATUS_OK;
 }
 
 static bool waits(const struct sampling_engine *engine, char *text, size_t size) {

@@ -49,8 +49,8 @@ struct engine_tongue {
     /// Name of the trajectory in the folder, and how many of its first frames are no samples.
     const char *(*frames)(const struct engine_run *run);
     size_t skip;
-    enum status (*numbers)(const struct engine_run *run, const char *folder,
-                           struct engine_numbers *numbers);
+    enum status (*numbers)(const struct engine_run *run, const struct engine_piece *piece,
+                           const char *folder, struct engine_numbers *numbers);
     void (*forget)(struct engine_run *run); ///< what `prepare` has made; NULL: nothing
 };
 enum { ENGINE_MAX_WORDS = 16 };
@@ -86,9 +86,13 @@ static inline uint64_t engine_steps(const struct engine_run *run, uint64_t sweep
     return sweeps * (uint64_t)run->settings->steps;
 }
 
+/// Add a line to the list of the folders that wait for their frames, those of ENGINE_LATER; NULL:
+/// begin it. Fails: IO.
+enum status mf_engine_wait(struct engine_run *run, const char *folder);
+
 /// Frames of a piece while they are read.
 struct engine_frames;
-enum status mf_engine_frames_open(const struct engine_run *run, const struct engine_piece *piece,
+enum status mf_engine_frames_open(struct engine_run *run, const struct engine_piece *piece,
                                   const char *folder, struct engine_frames **frames) MUST_USE;
 enum status mf_engine_frames_next(void *frames, double *const position[3],
                                   struct engine_sample *sample) MUST_USE;

@@ -133,14 +133,14 @@ static const char *find_reason(char *text) {
 }
 
 /// The numbers of a key, one of each frame.
-static enum status read_list(struct json_object *root, const char *key, double factor, size_t *rows,
+static enum status read_list(struct json_object *root, const char *key, double factor, size_t rows,
                              double **list) {
     const size_t count = (size_t)mf_json_count(root, key);
     if (!mf_json_has(root, key))
         return STATUS_OK;
-    if (count == 0 || (*rows > 0 && *rows != count))
-        mf_json_fault(root, key, "expected a list with one number of each frame");
-    *rows = count;
+    if (count != rows)
+        mf_json_fault(root, key, "expected a list of %zu numbers, one of each frame, found %zu",
+                      rows, count);
     TRY_ARRAY(*list, count + 1);
     (void)mf_json_list_numbers(root, key, *list, count);
     for (size_t k = 0; k < count; k++)
@@ -148,24 +148,25 @@ static enum status read_list(struct json_object *root, const char *key, double f
     return STATUS_OK;
 }
 
-static enum status read_answer(const struct engine_run *run, struct json_document *document,
-                               struct engine_numbers *numbers) {
+static enum status read_answer(const struct engine_run *run, const struct engine_piece *piece,
+                               struct json_document *document, struct engine_numbers *numbers) {
     const struct units *units = &run->fit->scene.units;
     const char *volume =
         run->fit->scene.setup.box.dimensions == 2 ? "k_B T_0/lambda^2" : "k_B T_0/lambda^3";
     struct json_object root = mf_json_root(document);
-    TRY(read_list(&root, "temperature", mf_units_factor(units, "T_0"), &numbers->rows,
+    numbers->rows = piece->frames;
+    TRY(read_list(&root, "temperature", mf_units_factor(units, "T_0"), numbers->rows,
                   &numbers->temperature));
-    TRY(read_list(&root, "pressure", mf_units_factor(units, volume), &numbers->rows,
+    TRY(read_list(&root, "pressure", mf_units_factor(units, volume), numbers->rows,
                   &numbers->pressure));
-    TRY(read_list(&root, "pair_energy", mf_units_factor(units, "k_B T_0"), &numbers->rows,
+    TRY(read_list(&root, "pair_energy", mf_units_factor(units, "k_B T_0"), numbers->rows,
                   &numbers->energy));
     mf_json_finish(&root);
     return STATUS_OK;
 }
 
-static enum status read_numbers(const struct engine_run *run, const char *folder,
-                                struct engine_numbers *numbers) {
+static enum status read_numbers(const struct engine_run *run, const struct engine_piece *piece,
+                                const char *folder, struct engine_numbers *numbers) {
     struct json_document *document;
     char path[OUTPUT_PATH_SIZE];
     struct stat found;
@@ -173,7 +174,7 @@ static enum status read_numbers(const struct engine_run *run, const char *folder
     if (stat(path, &found) != 0)
         return STATUS_OK;
     TRY(mf_json_open(&document, path));
-    return mf_json_close(document, read_answer(run, document, numbers));
+    return mf_json_close(document, read_answer(run, piece, document, numbers));
 }
 
 const struct engine_tongue mf_engine_command = {

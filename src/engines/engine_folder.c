@@ -42,6 +42,18 @@ static void forget(struct listing *listing) {
     free(listing->entry);
 }
 
+/// Names that a piece or its engine makes: what a user has of them beside the input is not linked,
+/// so that nothing writes through to it.
+static bool is_made(const char *name) {
+    static const char *const made[] = {"run.sh",      "engine.log",       "log.lammps",
+                                       "numbers.txt", "frames.lammpstrj", "last.lammpstrj",
+                                       "asked"};
+    bool is = strncmp(name, "mesofit", strlen("mesofit")) == 0;
+    for (size_t k = 0; k < sizeof made / sizeof *made; k++)
+        is = is || strcmp(name, made[k]) == 0;
+    return is;
+}
+
 static enum status remove_one(const char *path) {
     struct stat found;
     if (lstat(path, &found) == 0 && S_ISDIR(found.st_mode))
@@ -61,6 +73,27 @@ enum status mf_engine_folder_remove(const char *folder) {
     }
     forget(&inside);
     return status != STATUS_OK || rmdir(folder) == 0 ? status : fail(folder, "remove");
+}
+
+enum status mf_engine_folder_begin(const char *fit, bool resume) {
+    static const char mark[] = "of-mesofit";
+    char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE];
+    mf_engine_path(fit, "engine", folder);
+    mf_engine_path(folder, mark, path);
+    struct stat found;
+    const bool there = lstat(folder, &found) == 0;
+    if (there && (!S_ISDIR(found.st_mode) || access(path, F_OK) != 0))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: a folder of this name is there and is not of a fit; give another "
+            "folder with -o",
+            folder);
+    if (!resume)
+        TRY(mf_engine_folder_remove(folder));
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+        return fail(folder, "make the folder");
+    return mf_engine_write_text(
+        folder, mark, "Files of an engine that samples for a fit; the next one removes them.\n");
 }
 
 enum status mf_engine_folder_make(const char *fit, const char *folder) {
@@ -93,8 +126,8 @@ enum status mf_engine_folder_link(const char *folder, const char *file, const ch
         char target[OUTPUT_PATH_SIZE], link[OUTPUT_PATH_SIZE];
         mf_engine_path(from, inside.entry[k]->d_name, target);
         mf_engine_path(folder, inside.entry[k]->d_name, link);
-        if ((own == NULL || strcmp(own, target) != 0) && symlink(target, link) != 0 &&
-            errno != EEXIST)
+        if ((own == NULL || strcmp(own, target) != 0) && !is_made(inside.entry[k]->d_name) &&
+            symlink(target, link) != 0 && errno != EEXIST)
             status = fail(link, "make the link");
     }
     forget(&inside);
@@ -105,6 +138,7 @@ enum status mf_engine_write(const char *folder, const char *name, engine_print *
                             const void *context) {
     char path[OUTPUT_PATH_SIZE];
     mf_engine_path(folder, name, path);
+    unlink(path); // and not through a link
     FILE *stream = fopen(path, "w");
     if (stream == NULL)
         return fail(path, "write");

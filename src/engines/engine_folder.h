@@ -4,7 +4,13 @@
 
 #include "base/status.h"
 
+#include <stdbool.h>
 #include <stdio.h>
+
+/// Begin the folder "engine" in that of a fit: what an earlier fit has left there goes, unless the
+/// fit goes on. A file in it says that it is ours: another folder of that name is not touched.
+/// Fails: IO; BAD_INPUT for a folder that is not ours.
+enum status mf_engine_folder_begin(const char *fit, bool resume) MUST_USE;
 
 /// Make the folder of a piece below that of the fit, empty. Fails: IO.
 enum status mf_engine_folder_make(const char *fit, const char *folder) MUST_USE;

@@ -8,6 +8,8 @@
 #include <unistd.h>
 
 struct engine_frames {
+    struct engine_run *run;
+    char folder[OUTPUT_PATH_SIZE];
     char file[OUTPUT_PATH_SIZE];
     struct trajectory trajectory;
     struct trajectory_frame frame;
@@ -88,7 +90,8 @@ static enum status find_atoms(const struct engine_run *run, struct engine_frames
 
 static enum status open_trajectory(const struct engine_run *run, struct engine_frames *frames) {
     const struct units *units = &run->fit->scene.units;
-    const bool physical = mf_units_known(units);
+    // LAMMPS is given real units where there is a scale, a command those of the run file.
+    const bool physical = run->tongue->units ? mf_units_known(units) : mf_units_are_physical(units);
     const char *other = physical ? run->tongue->units : "lj";
     frames->nm = physical ? units->length : 1;
     enum status status = mf_trajectory_open(&frames->trajectory, frames->file,
@@ -102,6 +105,8 @@ static enum status open_trajectory(const struct engine_run *run, struct engine_f
 
 /// Fewer frames than were asked for are a fault; what comes after them is left.
 static enum status fail_short(const struct engine_frames *frames) {
+    if (frames->run->later) // until they are whole
+        TRY(mf_engine_wait(frames->run, frames->folder));
     return mf_status_fail(
         STATUS_BAD_INPUT, "%s: it ends after %llu of the %llu frames that were asked for",
         frames->file, (unsigned long long)frames->taken, (unsigned long long)frames->wanted);
@@ -123,12 +128,20 @@ static enum status fill(const struct engine_run *run, const struct engine_piece 
     TRY_ARRAY(frames->atom, frames->beads);
     TRY(open_trajectory(run, frames));
     TRY(find_atoms(run, frames));
-    return run->tongue->numbers(run, folder, &frames->numbers);
+    TRY(run->tongue->numbers(run, piece, folder, &frames->numbers));
+    if (targets_ask(&run->fit->problem.targets, TARGET_PRESSURE) && !frames->numbers.pressure)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: target.pressure: the engine does not tell the pressure of its "
+                              "frames, and may have forces that mesofit does not know",
+                              folder);
+    return STATUS_OK;
 }
 
-enum status mf_engine_frames_open(const struct engine_run *run, const struct engine_piece *piece,
+enum status mf_engine_frames_open(struct engine_run *run, const struct engine_piece *piece,
                                   const char *folder, struct engine_frames **frames) {
     TRY_ARRAY(*frames, 1);
+    (*frames)->run = run;
+    snprintf((*frames)->folder, sizeof(*frames)->folder, "%s", folder);
     const enum status status = fill(run, piece, folder, *frames);
     if (status == STATUS_OK)
         return STATUS_OK;
@@ -157,16 +170,21 @@ static enum status check_box(const struct engine_frames *frames) {
 }
 
 /// What is known beside the frame.
-static struct engine_sample find_sample(const struct engine_frames *frames) {
+static enum status find_sample(const struct engine_frames *frames, struct engine_sample *sample) {
     const struct engine_numbers *numbers = &frames->numbers;
     size_t row = (size_t)frames->taken + frames->skip;
     if (numbers->step)
         for (row = 0; row < numbers->rows && numbers->step[row] != frames->frame.step; row++)
             ;
     const bool known = row < numbers->rows;
-    return (struct engine_sample){known && numbers->temperature ? numbers->temperature[row] : NAN,
-                                  known && numbers->pressure ? numbers->pressure[row] : NAN,
-                                  known && numbers->energy ? numbers->energy[row] : NAN};
+    if (!known && numbers->step)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: no numbers of step %lld are beside it",
+                              frames->file, (long long)frames->frame.step);
+    *sample =
+        (struct engine_sample){known && numbers->temperature ? numbers->temperature[row] : NAN,
+                               known && numbers->pressure ? numbers->pressure[row] : NAN,
+                               known && numbers->energy ? numbers->energy[row] : NAN};
+    return STATUS_OK;
 }
 
 enum status mf_engine_frames_next(void *memory, double *const position[3],
@@ -181,7 +199,7 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
             return fail_short(frames);
     }
     TRY(check_box(frames));
-    *sample = find_sample(frames);
+    TRY(find_sample(frames, sample));
     frames->taken++;
     for (int d = 0; d < frames->box->dimensions; d++) {
         const double length = frames->box->length[d];

@@ -61,6 +61,33 @@ static void set_scene(const struct engine_run *run, const struct engine_piece *p
     model->rdf_range = piece->potential->cutoff;
 }
 
+/// See whether an input sets the pair style, or a file that it includes, which lies beside it.
+static enum status look_for_style(const char *file, int depth, struct shared *shared) {
+    enum { DEEPEST = 8 };
+    OWNED char *text = NULL;
+    size_t length;
+    if (depth == DEEPEST || access(file, R_OK) != 0) // of variables: LAMMPS will say it
+        return STATUS_OK;
+    TRY(mf_text_file_read(file, &text, &length));
+    const char *slash = strrchr(file, '/');
+    for (const char *line = text; line; line = strchr(line, '\n')) {
+        char name[256], path[OUTPUT_PATH_SIZE];
+        line += strspn(line, " \t\n");
+        if (sscanf(line, "include %255s", name) == 1 && strncmp(name, "mesofit", 7) != 0) {
+            const bool beside = slash && name[0] != '/';
+            snprintf(path, sizeof path, "%.*s%s", beside ? (int)(slash - file) + 1 : 0, file, name);
+            TRY(look_for_style(path, depth + 1, shared));
+        }
+        if (strncmp(line, "pair_style", strlen("pair_style")) != 0)
+            continue;
+        const size_t end = strcspn(line, "\n");
+        const char *hybrid = strstr(line, "hybrid");
+        shared->has_style = true;
+        shared->is_hybrid = hybrid && hybrid < line + end;
+    }
+    return STATUS_OK;
+}
+
 /// The input of a user, with what it must have.
 static enum status check_input(const struct engine_run *run, struct shared *shared) {
     const char *file = run->settings->input;
@@ -77,16 +104,7 @@ static enum status check_input(const struct engine_run *run, struct shared *shar
                 file, includes[k]);
     const char *slash = strrchr(file, '/');
     shared->input = slash ? slash + 1 : file;
-    for (const char *line = text; line; line = strchr(line, '\n')) {
-        line += strspn(line, " \t\n");
-        if (strncmp(line, "pair_style", strlen("pair_style")) != 0)
-            continue;
-        const size_t end = strcspn(line, "\n");
-        const char *hybrid = strstr(line, "hybrid");
-        shared->has_style = true;
-        shared->is_hybrid = hybrid && hybrid < line + end;
-    }
-    return STATUS_OK;
+    return look_for_style(file, 0, shared);
 }
 
 static void print_data(const void *job, FILE *stream) {
@@ -132,7 +150,6 @@ static enum status prepare(struct engine_run *run, const struct engine_piece *pi
     shared->model.scene.start = run->fit->scene.start;
     TRY(mf_export_start_find(&shared->model));
     mf_engine_path(run->folder, "engine", folder);
-    mkdir(folder, 0777);
     return write_data(run, shared);
 }
 
@@ -165,7 +182,7 @@ static void print_interactions(const void *memory, FILE *stream) {
     const struct job *job = memory;
     const struct shared *shared = job->run->own;
     const bool own_style = shared->input && shared->has_style;
-    fprintf(stream, "# %s: written by mesofit\n", job->model.title);
+    fprintf(stream, "# written by mesofit\n");
     if (!own_style)
         fprintf(stream, "pair_style table linear %zu\n", job->export.grids.grid[0][0].rows);
     if (shared->input && job->piece->molecules) {
@@ -201,10 +218,12 @@ static void print_run(const void *memory, FILE *stream) {
     fprintf(stream, "reset_timestep 0\n");
     if (!own)
         fprintf(stream, "compute mesofit_table all pair table epair\n");
-    fprintf(stream,
-            "fix mesofit_numbers all ave/time %llu 1 %llu c_thermo_temp c_thermo_press %s file %s "
-            "format \" %%.10g\"\n",
-            every, every, own ? "c_thermo_pe" : "c_mesofit_table", numbers_name);
+    fprintf(
+        stream,
+        "variable mesofit_temp equal temp\nvariable mesofit_press equal press\n"
+        "fix mesofit_numbers all ave/time %llu 1 %llu v_mesofit_temp v_mesofit_press %s file %s "
+        "format \" %%.10g\"\n",
+        every, every, own ? "c_thermo_pe" : "c_mesofit_table", numbers_name);
     fprintf(stream,
             "dump mesofit_frames all custom %llu %s id type x y z\n"
             "dump_modify mesofit_frames format float %%.9g\nrun %llu\n"
@@ -271,7 +290,6 @@ static enum status write_piece(const struct engine_run *run, const struct engine
     set_scene(run, piece, &job->model);
     name_types(&job->model);
     snprintf(job->model.folder, sizeof job->model.folder, "%s", run->folder);
-    snprintf(job->model.title, sizeof job->model.title, "%.200s", run->fit->heading.title);
     snprintf(job->before, sizeof job->before, "../../%04llu/%02zu",
              (unsigned long long)piece->number - 1, piece->replica + 1);
     const enum status status = make(job, folder);
@@ -322,8 +340,9 @@ static const char *name_frames(const struct engine_run *run) {
 }
 
 /// Step, temperature, pressure, energy of each frame.
-static enum status read_numbers(const struct engine_run *run, const char *folder,
-                                struct engine_numbers *numbers) {
+static enum status read_numbers(const struct engine_run *run, const struct engine_piece *piece,
+                                const char *folder, struct engine_numbers *numbers) {
+    (void)piece;
     CLEARED_BY(mf_data_table_clear) struct data_table table = {0};
     const struct export_units units = mf_export_units(EXPORT_REAL, &run->fit->scene.units, false);
     char path[OUTPUT_PATH_SIZE];

@@ -38,6 +38,8 @@ enum status mf_inversion_observe(struct inversion *inversion,
         struct sharing sharing = {inversion, s, listener};
         TRY(mf_inversion_sample(inversion, state,
                                 &(struct inverse_listener){report_of_state, &sharing}));
+        if (state->assessment.unstable)
+            continue;
         TRY(mf_inversion_response_assess(state));
         if (state->assessment.unequilibrated.found)
             state->pool.samples = 0;

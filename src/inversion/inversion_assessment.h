@@ -39,6 +39,8 @@ struct inversion_assessment {
     double disagreement;   ///< of the replicas, mf_replicas_disagreement
     struct inversion_unequilibrated unequilibrated; ///< `found`: the samples are not those of
                                                     ///< equilibrium, and there are to be no more
+    bool unstable;   ///< there are none: another engine could not sample the potential, and all
+                     ///< numbers are those of the one before
     bool useless;    ///< what has not settled of them might change a step
     int64_t stretch; ///< of their equilibration and spacing
 };

@@ -105,7 +105,9 @@ static double find_nearest_part(const struct inversion *inversion) {
 static void go_back(struct inversion *inversion) {
     struct inversion_course *course = &inversion->course;
     if (!course->progress.has_other) {
-        course->progress.damping *= fmin(0.5, fmax(0.125, find_nearest_part(inversion)));
+        course->progress.damping *= inversion->assessment.unstable
+                                        ? 0.5
+                                        : fmin(0.5, fmax(0.125, find_nearest_part(inversion)));
         return;
     }
     memcpy(course->best.step, course->best.other_step,

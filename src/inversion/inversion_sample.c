@@ -246,6 +246,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     TRY(unstable ? STATUS_OK : status);
     unequilibrated->sweeps = sampling.sweeps;
     state->work.memory = state->inefficiency * (double)sampling.plan.every;
+    state->assessment.unstable = unstable;
     state->assessment.useless =
         unstable || (unequilibrated->found && !mf_inversion_is_far_beyond_drift(state));
     state->work.sweeps += replicas * sampling.sweeps;

@@ -72,7 +72,7 @@ static enum status equilibrate(void *own, uint64_t sweeps) {
 static struct engine_piece describe(const struct engine_source *source, bool fresh, uint64_t lead,
                                     uint64_t samples, uint64_t every) {
     return (struct engine_piece){.replica = source->replica,
-                                 .number = source->number + 1,
+                                 .number = source->number,
                                  .fresh = fresh,
                                  .seed = source->seed,
                                  .temperature = source->temperature,
@@ -85,7 +85,8 @@ static struct engine_piece describe(const struct engine_source *source, bool fre
 
 static enum status announce(void *own, bool scatter, uint64_t lead, uint64_t samples,
                             uint64_t every) {
-    const struct engine_source *source = own;
+    struct engine_source *source = own;
+    source->number++; // of all replicas, whichever of them will come to begin
     const struct engine_piece piece =
         describe(source, scatter || source->fresh, lead, samples, every);
     return source->engine->announce ? source->engine->announce(source->engine->context, &piece)
@@ -98,7 +99,6 @@ static enum status plan(void *own, uint64_t samples, uint64_t every) {
     source->engine->end(source->frames);
     source->frames = NULL;
     const struct engine_piece piece = describe(source, source->fresh, source->lead, samples, every);
-    source->number++;
     const enum status status =
         source->engine->begin(source->engine->context, &piece, &source->frames);
     source->fresh = status != STATUS_OK; // from what it has not left nothing goes on

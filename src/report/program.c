@@ -223,7 +223,10 @@ enum status mf_program_command(const char *folder, const char *const *words,
     enum { MOST = 32 };
     char script[OUTPUT_PATH_SIZE];
     const char *all[MOST + 4] = {"sh", "-c", script, "sh"};
-    const int length = snprintf(script, sizeof script, "exec %s \"$@\"", words[0]);
+    // A plain command takes the place of the shell, so that it ends with this program.
+    const bool plain = words[0][strcspn(words[0], ";&|<>()$`=\n")] == '\0';
+    const int length =
+        snprintf(script, sizeof script, "%s%s \"$@\"", plain ? "exec " : "", words[0]);
     if (length < 0 || (size_t)length >= sizeof script)
         return mf_status_fail(STATUS_BAD_INPUT, "the command is too long: %.60s...", words[0]);
     for (size_t k = 1; k < MOST && words[k]; k++)

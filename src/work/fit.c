@@ -424,6 +424,8 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     status = mf_units_convert_message(&run->fit.scene.units, iterate(run));
     if (status == STATUS_OK)
         status = verify_and_write(run);
+    if (status != STATUS_OK && run->fit.problem.engine && save(run) != STATUS_OK)
+        status = STATUS_IO;
     if (status == STATUS_INTERRUPTED)
         status = write_interrupted(run, options->engine);
 done:

@@ -38,13 +38,20 @@ static void report_of_state(void *context, const struct inverse_progress *own) {
     sharing->listener->report(sharing->listener->context, &reported);
 }
 
+/// Another engine verifies what it may know more of than the scene does.
+static bool verifies_elsewhere(const struct fit_file *state) {
+    const bool knows = state->engine.kind == ENGINE_COMMAND || state->engine.input[0];
+    return state->verification.by == VERIFY_BY_ENGINE ||
+           (state->verification.by == VERIFY_BY_AUTO && knows);
+}
+
 /// The engine advises a shorter "time_step", which here is the verification's own.
 static enum status advise(const struct fit_file *state, const struct verify_step *step,
                           enum status status) {
     const struct units *units = &state->scene.units;
     const double time = mf_units_factor(units, "tau");
     char unit[UNITS_NAME_SIZE], message[STATUS_MESSAGE_SIZE];
-    if (mf_units_convert_message(units, status) != STATUS_UNSTABLE)
+    if (mf_units_convert_message(units, status) != STATUS_UNSTABLE || verifies_elsewhere(state))
         return status;
     snprintf(message, sizeof message, "%s", mf_status_message());
     mf_units_suffix(units, "tau", unit);
@@ -85,13 +92,6 @@ static struct verify_parameters plan_of(const struct fit_file *state, int round)
         parameters.plan.equilibration = AGAIN * (parameters.plan.equilibration +
                                                  parameters.plan.samples * parameters.plan.every);
     return parameters;
-}
-
-/// Another engine verifies what it may know more of than the scene does.
-static bool verifies_elsewhere(const struct fit_file *state) {
-    const bool knows = state->engine.kind == ENGINE_COMMAND || state->engine.input[0];
-    return state->verification.by == VERIFY_BY_ENGINE ||
-           (state->verification.by == VERIFY_BY_AUTO && knows);
 }
 
 static enum status verify_state(const struct fit_file *state, int round, double *const *curve,

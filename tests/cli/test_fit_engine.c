@@ -68,7 +68,8 @@ static const char engine[] =
     "def column(name): return [float(row[names.index(name)]) for row in rows]\n"
     "energy = [250 * value + (50 if said == 'energy' else 0) for value in"
     " column('potential_energy')]\n"
-    "json.dump({'temperature': column('temperature'), 'pressure': column('pressure'),\n"
+    "json.dump({'temperature': column('temperature'), 'pressure': column('pressure')[said == "
+    "'numbers':],\n"
     "           'pair_energy': energy}, open('sample.json', 'w'))\n";
 
 #define COMMAND "python3 ../../../../engine.py"
@@ -163,11 +164,29 @@ static void test_samples_made_later_give_the_same_bits(void **state) {
     results_assert_same("whole", "out", same);
 }
 
+static void test_broken_samples_are_waited_for_again(void **state) {
+    static const char *const same[] = {"potential.tsv", "rdf.tsv", NULL};
+    write_coarse(*state, "coarse.json");
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "whole", "--engine", COMMAND);
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later");
+    temporary_folder_write(*state, "trouble", "short", 5);
+    assert_true(sample_what_is_listed());
+    unlink("trouble");
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later", "--resume");
+    run_program_assert_code(&result, 2);
+    for (int rounds = 0; sample_what_is_listed(); rounds++) {
+        assert_true(rounds < 20);
+        RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later", "--resume");
+    }
+    results_assert_same("whole", "out", same);
+}
+
 static void test_what_is_wrong_with_an_engine_is_said(void **state) {
     static const struct {
         const char *trouble, *word;
         int code;
     } cases[] = {{"energy", "of the same configuration the engine has the energy", 2},
+                 {"numbers", "expected a list of 32 numbers, one of each frame, found 31", 2},
                  {"short", "it ends after 31 of the 32 frames", 2},
                  {"hot", "the engine samples at a temperature that is", 1}};
     write_coarse(*state, "coarse.json");
@@ -181,6 +200,13 @@ static void test_what_is_wrong_with_an_engine_is_said(void **state) {
         assert_int_equal(run_program_lines(result.err), 1);
     }
     unlink("trouble");
+    assert_int_equal(mkdir("mine", 0777), 0);
+    assert_int_equal(mkdir("mine/engine", 0777), 0);
+    temporary_folder_write(*state, "mine/engine/script.py", "", 0);
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "mine", "--engine", COMMAND, "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "mine/engine: a folder of this name is there"));
+    assert_true(is_there("mine/engine/script.py"));
     RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "new", "--engine", "no-such-engine",
                 "--quiet");
     run_program_assert_code(&result, 2);
@@ -205,7 +231,47 @@ static void test_wrong_settings_are_refused(void **state) {
     refuse(*state, "\"steps\": 20", "\"input\": \"in.lmp\"", COMMAND, "engine.input");
     refuse(*state, "\"name\": \"auto\", " PLAN, "\"name\": \"cma-es\"", COMMAND,
            "it samples for inversions alone");
+    refuse(*state, "\"steps\": 20", "\"types\": {\"1 2; shell\": \"A\"}", COMMAND,
+           "letters, digits");
     refuse(*state, "\"steps\": 20", "\"types\": {\"1\": \"Q\"}", COMMAND, "engine.types.1");
+}
+
+/// An input whose styles stand in a file that it includes, with a known part beside the table.
+static const char input[] = "units lj\natom_style atomic\nregion box block 0 5 0 5 0 5\n"
+                            "create_box 1 box\ncreate_atoms 1 random 250 4711 box\nmass 1 1\n"
+                            "include ff.lmp\ninclude mesofit.lmp\nminimize 1e-3 1e-3 100 1000\n"
+                            "velocity all create ${temperature} ${seed}\n"
+                            "fix bath all langevin 1 1 0.3 ${seed}\nfix move all nve\n"
+                            "timestep 0.005\ninclude mesofit-run.lmp\n";
+
+static void test_lammps_runs_an_input(void **state) {
+    lammps_runs_skip_without(NULL);
+    write_coarse(*state, "coarse.json");
+    small_inputs_change(*state, "coarse.json", "\"seed\": 4",
+                        "\"seed\": 4, \"title\": \"a\\nshell touch pwned\"");
+    small_inputs_change(
+        *state, "coarse.json", ENGINE,
+        "\"engine\": {\"name\": \"lammps\", \"input\": \"in.user\", \"steps\": 20}");
+    small_inputs_write(*state, "in.user", input, NULL, NULL);
+    small_inputs_write(
+        *state, "ff.lmp",
+        "pair_style hybrid/overlay table linear 4000 soft 1\npair_coeff * * soft 0\n", NULL, NULL);
+    small_inputs_write(*state, "log.lammps", "mine\n", NULL, NULL);
+    small_inputs_write(*state, "run.sh", "mine\n", NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "lmp");
+    assert_in_range(result.code, 0, 1);
+    results_assert_text("out/summary.json", "verified_by", "lammps");
+    assert_false(is_there("out/engine/0002/01/pwned"));
+    static const char *const mine[] = {"log.lammps", "run.sh"};
+    for (int k = 0; k < 2; k++) {
+        char *text = temporary_folder_read(mine[k]);
+        assert_string_equal(text, "mine\n");
+        free(text);
+    }
+    char *text = temporary_folder_read("out/engine/0002/01/mesofit.lmp");
+    assert_non_null(strstr(text, "pair_coeff 1 1 table mesofit.table"));
+    assert_null(strstr(text, "pair_style"));
+    free(text);
 }
 
 static void test_lammps_finds_the_potential(void **state) {
@@ -226,9 +292,12 @@ int main(void) {
                                         enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_samples_made_later_give_the_same_bits, enter,
                                         small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_broken_samples_are_waited_for_again, enter,
+                                        small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_what_is_wrong_with_an_engine_is_said, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_wrong_settings_are_refused, enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_lammps_runs_an_input, enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_lammps_finds_the_potential, enter, small_inputs_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
