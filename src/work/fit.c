@@ -367,9 +367,7 @@ static enum status verify_and_write(struct run *run) {
                                   agreed ? &run->standing.accuracy : NULL, &run->progress,
                                   &listener, verification);
     mf_task_log_use(NULL);
-    if (status == STATUS_UNSTABLE)
-        status = write_unstable(run);
-    CHECK(status);
+    CHECK(status == STATUS_UNSTABLE ? write_unstable(run) : status);
     doubt(run, verification);
     const bool accepted = run->standing.converged || run->standing.exhausted;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
@@ -424,8 +422,8 @@ enum status mf_fit_run(const char *file, const struct run_options *options) {
     status = mf_units_convert_message(&run->fit.scene.units, iterate(run));
     if (status == STATUS_OK)
         status = verify_and_write(run);
-    if (status != STATUS_OK && run->fit.problem.engine && save(run) != STATUS_OK)
-        status = STATUS_IO;
+    if (status != STATUS_OK && run->fit.problem.engine)
+        (void)save(run);
     if (status == STATUS_INTERRUPTED)
         status = write_interrupted(run, options->engine);
 done:
