@@ -260,6 +260,8 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
     FileError, UnstableError, KeyboardInterrupt
         As of `simulate`.
     """
+    if engine == "later":
+        raise InputError("engine: who makes the samples later is an Inversion")
     return fit_with(target, keys, _options(engine=engine, threads=threads, seed=seed), folder, resume,
                     force, progress, density=density, temperature=temperature)
 

@@ -88,6 +88,10 @@ void mf_fit_engine_write(const struct fit_file *fit, struct json_writer *writer)
     mf_json_end(writer);
 }
 
+bool mf_fit_engine_knows_more(const struct fit_file *fit) {
+    return fit->engine.kind == ENGINE_COMMAND || fit->engine.input[0];
+}
+
 static enum status refuse(const char *file, const char *why) {
     return mf_status_fail(STATUS_BAD_INPUT, "%s: engine: %s", file, why);
 }

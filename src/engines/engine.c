@@ -83,10 +83,11 @@ static enum status write_script(const struct engine_run *run, const struct engin
         run->tongue->words(run, piece, words, text, sizeof text);
     int length = snprintf(script, sizeof script,
                           "#!/bin/sh\n# sh run.sh COMMAND: what --engine COMMAND runs here\n"
-                          "cd \"$(dirname \"$0\")\" && exec \"$@\"");
+                          "cd \"$(dirname \"$0\")\" || exit 1\nrm -f failed\n\"$@\"");
     for (size_t k = 0; words[k]; k++)
         length += snprintf(script + length, sizeof script - (size_t)length, " '%s'", words[k]);
-    snprintf(script + length, sizeof script - (size_t)length, "\n");
+    snprintf(script + length, sizeof script - (size_t)length,
+             "\ncode=$?\n[ $code = 0 ] || echo $code >failed\nexit $code\n");
     return mf_engine_write_text(folder, "run.sh", script);
 }
 
@@ -128,6 +129,9 @@ static enum status write_piece(struct engine_run *run, const struct engine_piece
 static bool has_frames(const struct engine_run *run, const char *folder) {
     char path[OUTPUT_PATH_SIZE];
     struct stat found;
+    mf_engine_path(folder, "failed", path); // by run.sh
+    if (stat(path, &found) == 0)
+        return false;
     mf_engine_path(folder, run->tongue->frames(run), path);
     return stat(path, &found) == 0;
 }
@@ -168,6 +172,28 @@ static struct engine_piece whole(const struct engine_run *run, const struct engi
         own.lead += own.frames * own.every;
     }
     return own;
+}
+
+enum status mf_engine_compare(struct engine_run *run, uint64_t number, size_t replica,
+                              uint64_t digest) {
+    size_t like = ENGINE_MAX_REPLICAS;
+    pthread_mutex_lock(&run->lock);
+    for (size_t k = 0; k < ENGINE_MAX_REPLICAS; k++)
+        if (k != replica && run->seen[k].number == number + 1 && run->seen[k].digest == digest)
+            like = k;
+    if (replica < ENGINE_MAX_REPLICAS) {
+        run->seen[replica].number = number + 1; // 0: nothing is known
+        run->seen[replica].digest = digest;
+    }
+    pthread_mutex_unlock(&run->lock);
+    return like == ENGINE_MAX_REPLICAS
+               ? STATUS_OK
+               : mf_status_fail(
+                     STATUS_BAD_INPUT,
+                     "--engine: replicas %zu and %zu have the same frames: the seed that "
+                     "each is given is not used (of LAMMPS ${seed}, in every command "
+                     "that takes one)",
+                     like + 1, replica + 1);
 }
 
 static enum status begin(void *context, const struct engine_piece *asked, void **frames) {

@@ -53,7 +53,7 @@ struct engine_tongue {
                            const char *folder, struct engine_numbers *numbers);
     void (*forget)(struct engine_run *run); ///< what `prepare` has made; NULL: nothing
 };
-enum { ENGINE_MAX_WORDS = 16 };
+enum { ENGINE_MAX_WORDS = 16, ENGINE_MAX_REPLICAS = 64 };
 extern const struct engine_tongue mf_engine_lammps, mf_engine_command;
 
 /// An engine of a run.
@@ -69,6 +69,9 @@ struct engine_run {
     pthread_mutex_t lock;
     bool prepared;
     void *own; ///< of the tongue
+    struct {
+        uint64_t number, digest;
+    } seen[ENGINE_MAX_REPLICAS]; ///< of the first frames
 };
 
 /// The command that is none: pieces are written, and the fit ends; it goes on once somebody has run
@@ -89,6 +92,11 @@ static inline uint64_t engine_steps(const struct engine_run *run, uint64_t sweep
 /// Add a line to the list of the folders that wait for their frames, those of ENGINE_LATER; NULL:
 /// begin it. Fails: IO.
 enum status mf_engine_wait(struct engine_run *run, const char *folder);
+
+/// Compare the first frame of a piece, by a digest of its places, with that of the other replicas.
+/// Fails: BAD_INPUT if another one has the same.
+enum status mf_engine_compare(struct engine_run *run, uint64_t number, size_t replica,
+                              uint64_t digest);
 
 /// Frames of a piece while they are read.
 struct engine_frames;

@@ -42,18 +42,6 @@ static void forget(struct listing *listing) {
     free(listing->entry);
 }
 
-/// Names that a piece or its engine makes: what a user has of them beside the input is not linked,
-/// so that nothing writes through to it.
-static bool is_made(const char *name) {
-    static const char *const made[] = {"run.sh",      "engine.log",       "log.lammps",
-                                       "numbers.txt", "frames.lammpstrj", "last.lammpstrj",
-                                       "asked"};
-    bool is = strncmp(name, "mesofit", strlen("mesofit")) == 0;
-    for (size_t k = 0; k < sizeof made / sizeof *made; k++)
-        is = is || strcmp(name, made[k]) == 0;
-    return is;
-}
-
 static enum status remove_one(const char *path) {
     struct stat found;
     if (lstat(path, &found) == 0 && S_ISDIR(found.st_mode))
@@ -109,29 +97,24 @@ enum status mf_engine_folder_make(const char *fit, const char *folder) {
     return mkdir(path, 0777) == 0 ? STATUS_OK : fail(path, "make the folder");
 }
 
-enum status mf_engine_folder_link(const char *folder, const char *file, const char *fit) {
-    enum status status = STATUS_OK;
-    char beside[OUTPUT_PATH_SIZE];
-    snprintf(beside, sizeof beside, "%s", file);
-    char *slash = strrchr(beside, '/');
-    *(slash ? slash : beside) = '\0';
-    OWNED char *from = realpath(slash ? beside : ".", NULL);
-    OWNED char *own = realpath(fit, NULL);
-    struct listing inside = {NULL, -1};
-    if (from)
-        inside = list(from);
-    if (inside.count < 0)
+enum status mf_engine_folder_link(const char *folder, const char *file, const char *name) {
+    char beside[OUTPUT_PATH_SIZE], link[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE];
+    const char *slash = strrchr(file, '/');
+    if (name[0] == '/') // found from anywhere
+        return STATUS_OK;
+    snprintf(beside, sizeof beside, "%.*s", slash ? (int)(slash - file) : 1, slash ? file : ".");
+    OWNED char *from = realpath(beside, NULL);
+    if (from == NULL)
         return fail(beside, "read");
-    for (int k = 0; k < inside.count && status == STATUS_OK; k++) {
-        char target[OUTPUT_PATH_SIZE], link[OUTPUT_PATH_SIZE];
-        mf_engine_path(from, inside.entry[k]->d_name, target);
-        mf_engine_path(folder, inside.entry[k]->d_name, link);
-        if ((own == NULL || strcmp(own, target) != 0) && !is_made(inside.entry[k]->d_name) &&
-            symlink(target, link) != 0 && errno != EEXIST)
-            status = fail(link, "make the link");
+    mf_engine_path(from, name, path);
+    mf_engine_path(folder, name, link);
+    for (char *at = strchr(link + strlen(folder) + 1, '/'); at; at = strchr(at + 1, '/')) {
+        *at = '\0'; // folders on the way to it
+        if (mkdir(link, 0777) != 0 && errno != EEXIST)
+            return fail(link, "make the folder");
+        *at = '/';
     }
-    forget(&inside);
-    return status;
+    return symlink(path, link) == 0 || errno == EEXIST ? STATUS_OK : fail(link, "make the link");
 }
 
 enum status mf_engine_write(const char *folder, const char *name, engine_print *print,

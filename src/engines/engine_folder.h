@@ -18,9 +18,8 @@ enum status mf_engine_folder_make(const char *fit, const char *folder) MUST_USE;
 /// Remove it with all that is in it; links are removed, not what they name. Fails: IO.
 enum status mf_engine_folder_remove(const char *folder) MUST_USE;
 
-/// Link there all that lies beside a file, so that an input finds what it reads: but for the folder
-/// of the fit, and names that are there already. Fails: IO.
-enum status mf_engine_folder_link(const char *folder, const char *file, const char *fit) MUST_USE;
+/// Link there what lies beside a file under a name, with the folders of that name. Fails: IO.
+enum status mf_engine_folder_link(const char *folder, const char *file, const char *name) MUST_USE;
 
 /// Write a file of a folder. Fails: IO.
 typedef void engine_print(const void *context, FILE *stream);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/digest.h"
 #include "base/memory.h"
 #include "engines/engine.h"
 #include "engines/engine_folder.h"
@@ -18,7 +19,9 @@ struct engine_frames {
     double nm; ///< of λ, as the trajectory is read
     size_t beads;
     size_t *atom; ///< of each bead, shape [beads]
-    uint64_t taken, wanted;
+    size_t replica;
+    uint64_t number, taken, wanted;
+    uint64_t last; ///< digest of the places in the frame before
     size_t skip;
     struct engine_numbers numbers;
 };
@@ -93,12 +96,14 @@ static enum status open_trajectory(const struct engine_run *run, struct engine_f
     // LAMMPS is given real units where there is a scale, a command those of the run file.
     const bool physical = run->tongue->units ? mf_units_known(units) : mf_units_are_physical(units);
     const char *other = physical ? run->tongue->units : "lj";
+    // Files that do not say their units are in those of the run file.
+    const char *own = !physical ? NULL : units->system == UNITS_ANGSTROM_FS ? "real" : "nm-ps";
     frames->nm = physical ? units->length : 1;
     enum status status = mf_trajectory_open(&frames->trajectory, frames->file,
                                             &(struct trajectory_options){.units = other});
     if (status == STATUS_BAD_INPUT && run->tongue->units == NULL) // a format that has its own
         status = mf_trajectory_open(&frames->trajectory, frames->file,
-                                    &(struct trajectory_options){.units = NULL});
+                                    &(struct trajectory_options){.units = own});
     frames->open = status == STATUS_OK;
     return status;
 }
@@ -118,6 +123,8 @@ static enum status fill(const struct engine_run *run, const struct engine_piece 
     frames->box = &setup->box;
     frames->beads = (size_t)setup->placement.count;
     frames->wanted = piece->frames;
+    frames->replica = piece->replica;
+    frames->number = piece->number;
     frames->skip = run->tongue->skip;
     mf_engine_path(folder, run->tongue->frames(run), frames->file);
     if (access(frames->file, F_OK) != 0)
@@ -155,18 +162,44 @@ static enum status check_box(const struct engine_frames *frames) {
     static const double rounding = 1e-4;
     const struct trajectory_frame *frame = &frames->frame;
     for (int a = 0; frame->has_box && a < frames->box->dimensions; a++)
+        if (!frame->periodic[a])
+            return mf_status_fail(
+                STATUS_BAD_INPUT,
+                "%s: frame %zu: the box is not periodic along %c, and g(r) is that "
+                "of periodic boxes",
+                frames->file, frame->number, 'x' + a);
+    for (int a = 0; frame->has_box && a < frames->box->dimensions; a++)
         for (int b = 0; b < frames->box->dimensions; b++) {
             const double wanted = a == b ? frames->box->length[a] * frames->nm : 0;
             if (fabs(frame->box[a][b] - wanted) > rounding * frames->box->length[a] * frames->nm)
                 return mf_status_fail(
                     STATUS_BAD_INPUT,
-                    "%s: frame %zu: the box is %.6g by %.6g by %.6g where the scene's is %.6g by "
-                    "%.6g by %.6g; it must be rectangular and constant",
-                    frames->file, frame->number, frame->box[0][0], frame->box[1][1],
-                    frame->box[2][2], frames->box->length[0] * frames->nm,
-                    frames->box->length[1] * frames->nm, frames->box->length[2] * frames->nm);
+                    "%s: frame %zu: the box is %.6g by %.6g by %.6g" STATUS_LENGTH
+                    " where the scene's is %.6g by %.6g by %.6g" STATUS_LENGTH
+                    "; \"box\" of the scene must be that of the engine, rectangular and constant, "
+                    "and the frames in their format's units",
+                    frames->file, frame->number, frame->box[0][0] / frames->nm,
+                    frame->box[1][1] / frames->nm, frame->box[2][2] / frames->nm,
+                    frames->box->length[0], frames->box->length[1], frames->box->length[2]);
         }
     return STATUS_OK;
+}
+
+/// Samples of replicas, and of times, differ.
+static enum status check_motion(struct engine_frames *frames) {
+    uint64_t digest = DIGEST_OF_NOTHING;
+    for (size_t bead = 0; bead < frames->beads; bead++)
+        mf_digest_add(&digest, frames->frame.position[frames->atom[bead]],
+                      sizeof *frames->frame.position);
+    if (frames->taken > 0 && digest == frames->last)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: frame %zu: all beads are where they were in the frame before: "
+                              "nothing moves",
+                              frames->file, frames->frame.number);
+    frames->last = digest;
+    return frames->taken == 0
+               ? mf_engine_compare(frames->run, frames->number, frames->replica, digest)
+               : STATUS_OK;
 }
 
 /// What is known beside the frame.
@@ -199,6 +232,7 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
             return fail_short(frames);
     }
     TRY(check_box(frames));
+    TRY(check_motion(frames));
     TRY(find_sample(frames, sample));
     frames->taken++;
     for (int d = 0; d < frames->box->dimensions; d++) {

@@ -5,10 +5,10 @@
 #include "base/memory.h"
 #include "engines/engine.h"
 #include "engines/engine_folder.h"
+#include "engines/lammps_input.h"
 #include "export/export_lammps_molecules.h"
 #include "export/export_start.h"
 #include "io/data_table.h"
-#include "io/text_file.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -23,7 +23,7 @@ static const char frames_name[] = "frames.lammpstrj", numbers_name[] = "numbers.
 struct shared {
     struct export_model model; ///< of the scene, as it begins
     const char *input;         ///< name of the user's input; NULL: it is ours
-    bool has_style, is_hybrid; ///< it sets the pair style
+    struct lammps_input files; ///< of it
 };
 
 /// A piece as it is written.
@@ -61,50 +61,27 @@ static void set_scene(const struct engine_run *run, const struct engine_piece *p
     model->rdf_range = piece->potential->cutoff;
 }
 
-/// See whether an input sets the pair style, or a file that it includes, which lies beside it.
-static enum status look_for_style(const char *file, int depth, struct shared *shared) {
-    enum { DEEPEST = 8 };
-    OWNED char *text = NULL;
-    size_t length;
-    if (depth == DEEPEST || access(file, R_OK) != 0) // of variables: LAMMPS will say it
-        return STATUS_OK;
-    TRY(mf_text_file_read(file, &text, &length));
-    const char *slash = strrchr(file, '/');
-    for (const char *line = text; line; line = strchr(line, '\n')) {
-        char name[256], path[OUTPUT_PATH_SIZE];
-        line += strspn(line, " \t\n");
-        if (sscanf(line, "include %255s", name) == 1 && strncmp(name, "mesofit", 7) != 0) {
-            const bool beside = slash && name[0] != '/';
-            snprintf(path, sizeof path, "%.*s%s", beside ? (int)(slash - file) + 1 : 0, file, name);
-            TRY(look_for_style(path, depth + 1, shared));
-        }
-        if (strncmp(line, "pair_style", strlen("pair_style")) != 0)
-            continue;
-        const size_t end = strcspn(line, "\n");
-        const char *hybrid = strstr(line, "hybrid");
-        shared->has_style = true;
-        shared->is_hybrid = hybrid && hybrid < line + end;
-    }
-    return STATUS_OK;
-}
-
-/// The input of a user, with what it must have.
+/// The input of a user. What it says must not change while a fit goes on.
 static enum status check_input(const struct engine_run *run, struct shared *shared) {
-    const char *file = run->settings->input;
-    OWNED char *text = NULL;
-    size_t length;
-    TRY(mf_text_file_read(file, &text, &length));
-    static const char *const includes[] = {"mesofit.lmp", "mesofit-run.lmp"};
-    for (int k = 0; k < 2; k++)
-        if (strstr(text, includes[k]) == NULL)
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s: `include %s` is missing: the first stands where interactions "
-                "are set, the second where the run would",
-                file, includes[k]);
-    const char *slash = strrchr(file, '/');
+    const char *file = run->settings->input, *slash = strrchr(file, '/');
+    char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE];
+    unsigned long long before = 0;
+    TRY(mf_lammps_input_read(&shared->files, file));
     shared->input = slash ? slash + 1 : file;
-    return look_for_style(file, 0, shared);
+    mf_engine_path(run->folder, "engine", folder);
+    mf_engine_path(folder, "inputs", path);
+    FILE *kept = fopen(path, "r");
+    const bool known = kept && fscanf(kept, "%llx", &before) == 1;
+    if (kept)
+        fclose(kept);
+    if (known && before != shared->files.digest)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: it, or a file that it reads, has changed since the fit began: "
+                              "begin anew with --force, or change it back",
+                              file);
+    char text[32];
+    snprintf(text, sizeof text, "%llx\n", (unsigned long long)shared->files.digest);
+    return mf_engine_write_text(folder, "inputs", text);
 }
 
 static void print_data(const void *job, FILE *stream) {
@@ -181,7 +158,7 @@ static void print_pair(const struct job *job, int pair, const char *style, FILE 
 static void print_interactions(const void *memory, FILE *stream) {
     const struct job *job = memory;
     const struct shared *shared = job->run->own;
-    const bool own_style = shared->input && shared->has_style;
+    const bool own_style = shared->input && shared->files.sets_style;
     fprintf(stream, "# written by mesofit\n");
     if (!own_style)
         fprintf(stream, "pair_style table linear %zu\n", job->export.grids.grid[0][0].rows);
@@ -190,7 +167,7 @@ static void print_interactions(const void *memory, FILE *stream) {
         mf_export_lammps_coefficients(&job->export, stream);
     }
     for (int pair = 0; pair < job->export.grids.pairs; pair++)
-        print_pair(job, pair, own_style && shared->is_hybrid ? "table" : "", stream);
+        print_pair(job, pair, own_style && shared->files.is_hybrid ? "table" : "", stream);
 }
 
 /// A seed as LAMMPS takes it, for each piece another.
@@ -255,13 +232,21 @@ static enum status link_data(const char *folder) {
                : mf_status_fail(STATUS_IO, "%s: cannot make the link", link);
 }
 
+/// What the input reads beside it. Nothing else is there, so that it can write what it likes.
+static enum status link_inputs(const struct job *job, const char *folder) {
+    const struct shared *shared = job->run->own;
+    for (size_t k = 0; k < shared->files.files; k++)
+        TRY(mf_engine_folder_link(folder, job->run->settings->input, shared->files.file[k]));
+    return STATUS_OK;
+}
+
 static enum status write_files(const struct job *job, const char *folder) {
     const struct shared *shared = job->run->own;
     TRY(mf_engine_write(folder, "mesofit.table", print_table, job));
     TRY(mf_engine_write(folder, "mesofit.lmp", print_interactions, job));
     TRY(mf_engine_write(folder, "mesofit-run.lmp", print_run, job));
     if (shared->input)
-        return mf_engine_folder_link(folder, job->run->settings->input, job->run->folder);
+        return link_inputs(job, folder);
     TRY(link_data(folder));
     return mf_engine_write(folder, input_name, print_input, job);
 }

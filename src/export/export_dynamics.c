@@ -218,9 +218,9 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
     const struct export_units *units = &job->units;
     const double diffusion = units->length * units->length / units->time;
     fprintf(stream, "%sWhat of the dynamics goes to %s:\n", prefix, job->engine->title);
-    fprintf(stream,
-            "%sstructure  phi as tables: g(r), energy and pressure are those of the result\n",
-            prefix);
+    fprintf(stream, "%sstructure  phi as tables: %s\n", prefix,
+            job->model->partial ? "alone, without the forces that the engine of the fit knew"
+                                : "g(r), energy and pressure are those of the result");
     mf_export_densities_print(&job->densities, job->model, prefix, stream);
     print_friction(job, prefix, stream);
     if (job->measured)

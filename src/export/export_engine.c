@@ -205,6 +205,10 @@ static void print_number(FILE *stream, const char *name, const struct export_num
     fprintf(stream, " %s\n", unit);
 }
 
+static const char partial[] =
+    "This is the potential alone: the forces that the engine of the fit knew beside it are missing "
+    "here, and with them g(r) and pressure are others";
+
 static void print_readme(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const struct export_error *error = &job->grids.error;
@@ -218,6 +222,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
             job->engine->commands_of ? job->engine->commands_of(job) : job->engine->commands);
     mf_export_dynamics_print(job, "", stream);
     fprintf(stream, "\n");
+    if (model->partial)
+        fprintf(stream, "%s.\n\n", partial);
     fprintf(stream,
             "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g %s: %s.\n\n",
             units->length_name, units->time_name, units->energy_name, units->temperature_name,
@@ -270,6 +276,8 @@ static void print_result(const struct export_job *job, struct progress *to) {
         mf_progress_print(to, "%s", job->engine->versions);
     if (job->model->warning[0])
         mf_progress_print(to, "mesofit: warning: %s", job->model->warning);
+    if (job->model->partial)
+        mf_progress_print(to, "mesofit: warning: %s", partial);
     mf_progress_print(to,
                       "%zu rows; as %s reads them within %.2g k_B T and %.2g of the largest force "
                       "from r = %.4g %s on",

@@ -104,6 +104,10 @@ static enum status read_used(struct reading *reading) {
                                    ? read_run(reading, &root, &scene)
                                    : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING, NULL);
     read_time_step(&model->scene.setup, &root);
+    struct engine_settings engine;
+    struct json_object sampled = mf_json_child(&root, "engine", false);
+    mf_json_fields(&sampled, mf_sampling_engine_fields, &engine);
+    model->partial = engine.kind == ENGINE_COMMAND || engine.input[0];
     TRY(mf_json_close(document, status));
     model->setup = model->scene.setup;
     model->scene.units.dimensions = model->setup.box.dimensions;

@@ -31,6 +31,7 @@ struct export_model {
     struct pair_memory_law own_memory; ///< what other engines could have (export_friction.h)
     const struct molecules *molecules; ///< of the scene, or NULL
     bool remembers;                    ///< friction has memory: all of it is left out
+    bool partial;    ///< the engine of the fit may have known forces beside the potential
     bool thermostat; ///< omega was chosen to hold the temperature, and is no result
     int types;       ///< at least 1
     char name[COMPOSITION_MAX_TYPES][COMPOSITION_NAME_SIZE];

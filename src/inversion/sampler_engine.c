@@ -163,6 +163,8 @@ static enum status run(void *own, uint64_t sweeps, struct sampler_pairs *pairs) 
     TRY(check_energy(source, sample.energy));
     TRY(check_temperature(source, sample.temperature));
     *pairs = (struct sampler_pairs){hybrid->counts, hybrid->sums};
+    if (!source->engine->whole_energy && !isfinite(sample.pressure))
+        pairs->sums.virial = 0; // that of the known forces is missing
     if (isfinite(sample.pressure)) {
         const struct box *box = &hybrid->simulation.particles.box;
         const double ideal = (double)hybrid->simulation.particles.count * source->temperature;

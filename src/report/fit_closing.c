@@ -2,6 +2,7 @@
 #include "report/fit_closing.h"
 
 #include "base/number_text.h"
+#include "defaults/fit_engine.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -190,7 +191,12 @@ void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
     print_pressure(to, fit, result);
     print_slowest(to, &result->slowest);
     print_friction(to, fit, unknowns, result);
-    if (result->status == STATUS_OK)
+    if (result->status == STATUS_OK && mf_fit_engine_knows_more(fit))
+        mf_progress_print(to,
+                          "next: figures and summary.json are in %s; the potential runs beside the "
+                          "known forces, as the last mesofit.lmp or potential.tsv in %s/engine",
+                          folder, folder);
+    else if (result->status == STATUS_OK)
         mf_progress_print(to,
                           "next: figures and summary.json are in %s; mesofit export %s "
                           "--engine lammps writes the model for LAMMPS, or for another engine",

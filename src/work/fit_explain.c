@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
+#include "defaults/fit_engine.h"
 #include "defaults/fit_scales.h"
 #include "inversion/inversion.h"
 #include "observe/stages.h"
@@ -109,6 +110,8 @@ static enum status print_simulations(struct fit_file *fit) {
         TRY(print_sampling(fit));
     for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
         const struct fit_file *state = mf_fit_states_at(fit, s);
+        if (mf_fit_engine_knows_more(state)) // it verifies, too
+            continue;
         struct unknowns unknowns = {0};
         struct unknowns_laws laws = {0};
         enum status status = mf_unknowns_init(&unknowns, &state->problem);

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/spent.h"
+#include "defaults/fit_engine.h"
 #include "defaults/fit_states.h"
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
@@ -40,9 +41,8 @@ static void report_of_state(void *context, const struct inverse_progress *own) {
 
 /// Another engine verifies what it may know more of than the scene does.
 static bool verifies_elsewhere(const struct fit_file *state) {
-    const bool knows = state->engine.kind == ENGINE_COMMAND || state->engine.input[0];
     return state->verification.by == VERIFY_BY_ENGINE ||
-           (state->verification.by == VERIFY_BY_AUTO && knows);
+           (state->verification.by == VERIFY_BY_AUTO && mf_fit_engine_knows_more(state));
 }
 
 /// The engine advises a shorter "time_step", which here is the verification's own.

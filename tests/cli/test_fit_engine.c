@@ -268,10 +268,38 @@ static void test_lammps_runs_an_input(void **state) {
         assert_string_equal(text, "mine\n");
         free(text);
     }
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "exported");
+    run_program_assert_code(&result, 0);
+    assert_non_null(strstr(result.err, "This is the potential alone"));
     char *text = temporary_folder_read("out/engine/0002/01/mesofit.lmp");
     assert_non_null(strstr(text, "pair_coeff 1 1 table mesofit.table"));
     assert_null(strstr(text, "pair_style"));
     free(text);
+}
+
+static void test_lammps_inputs_that_cannot_be(void **state) {
+    static const struct {
+        const char *from, *to, *word;
+    } cases[] = {{"include mesofit.lmp", "# include mesofit.lmp", "include mesofit.lmp"},
+                 {"fix move all nve", "write_data ff.lmp", "ff.lmp: it is read, and `write_data`"},
+                 {"${seed}", "12345", "have the same frames"}};
+    lammps_runs_skip_without(NULL);
+    write_coarse(*state, "coarse.json");
+    small_inputs_change(*state, "coarse.json", ENGINE,
+                        "\"engine\": {\"name\": \"lammps\", \"input\": \"in.user\"}");
+    small_inputs_write(
+        *state, "ff.lmp",
+        "pair_style hybrid/overlay table linear 4000 soft 1\npair_coeff * * soft 0\n", NULL, NULL);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "in.user", input, cases[k].from, cases[k].to);
+        if (strcmp(cases[k].from, "${seed}") == 0) // both of them
+            small_inputs_change(*state, "in.user", "${seed}", "12345");
+        RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "lmp", "--quiet",
+                    "--force");
+        run_program_assert_code(&result, 2);
+        if (strstr(result.err, cases[k].word) == NULL)
+            fail_msg("%s: %s", cases[k].to, result.err);
+    }
 }
 
 static void test_lammps_finds_the_potential(void **state) {
@@ -297,6 +325,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_what_is_wrong_with_an_engine_is_said, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_wrong_settings_are_refused, enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_lammps_inputs_that_cannot_be, enter,
+                                        small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_lammps_runs_an_input, enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_lammps_finds_the_potential, enter, small_inputs_leave),
     };
