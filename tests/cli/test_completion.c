@@ -40,7 +40,7 @@ static void test_completion_knows_subcommands_and_options(void **state) {
     assert_completes("\"\"",
                      "bench compare describe export film fit import live measure plot simulate ");
     assert_completes("co", "compare ");
-    assert_completes("fit --e", "--explain ");
+    assert_completes("fit --e", "--engine --explain ");
     assert_completes("fit --re", "--resume ");
     assert_completes("fit --l", "--live ");
     assert_completes("bench \"\"", "accuracy engine samplers stability ");
