@@ -49,7 +49,9 @@ def test_it_goes_on_in_another_object(tmp_path):
     first = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out")
     tell_all(first)
     second = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out", resume=True)
-    assert [piece.asked["piece"] for piece in second.pieces] != [1, 1] or second.ended
+    assert len(second.pieces) == 2 and all(piece.asked["piece"] == 2 for piece in second.pieces)
+    assert all(piece.before == second.pieces[0].before.parent / piece.folder.name
+               for piece in second.pieces)
 
 
 def test_wrong_samples_are_refused(tmp_path):

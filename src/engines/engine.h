@@ -3,7 +3,7 @@
 /// and the frames that are read from it.
 ///
 /// Each replica has a folder for each of its pieces, engine/NNNN/RR in the folder of the fit. What
-/// an engine needs is written there by its record (struct engine_kind_record), the user's command
+/// an engine needs is written there by its record (struct engine_tongue), the user's command
 /// runs there, and its frames are read from there.
 #pragma once
 

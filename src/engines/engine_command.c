@@ -84,7 +84,8 @@ static void describe(const struct job *job, struct json_writer *writer) {
     mf_json_writer_set_units(writer, &run->fit->scene.units);
     mf_json_write_integer(writer, "piece", (int64_t)piece->number);
     mf_json_write_integer(writer, "replica", (int64_t)piece->replica + 1);
-    mf_json_write_integer(writer, "seed", (int64_t)((piece->seed + piece->number) % INT32_MAX));
+    mf_json_write_integer(writer, "seed",
+                          (int64_t)((piece->seed + piece->number) % (INT32_MAX - 1)) + 1);
     mf_json_write_quantity(writer, "temperature", "T_0", piece->temperature);
     mf_json_write_quantities(writer, "box", "lambda", setup->box.length,
                              (size_t)setup->box.dimensions);

@@ -24,6 +24,7 @@ struct engine_frames {
     uint64_t last; ///< digest of the places in the frame before
     size_t skip;
     struct engine_numbers numbers;
+    size_t row; ///< of the frame before: both grow
 };
 
 void mf_engine_frames_close(void *memory) {
@@ -203,12 +204,13 @@ static enum status check_motion(struct engine_frames *frames) {
 }
 
 /// What is known beside the frame.
-static enum status find_sample(const struct engine_frames *frames, struct engine_sample *sample) {
+static enum status find_sample(struct engine_frames *frames, struct engine_sample *sample) {
     const struct engine_numbers *numbers = &frames->numbers;
     size_t row = (size_t)frames->taken + frames->skip;
     if (numbers->step)
-        for (row = 0; row < numbers->rows && numbers->step[row] != frames->frame.step; row++)
-            ;
+        for (row = frames->row; row < numbers->rows && numbers->step[row] != frames->frame.step;)
+            row++;
+    frames->row = row;
     const bool known = row < numbers->rows;
     if (!known && numbers->step)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: no numbers of step %lld are beside it",

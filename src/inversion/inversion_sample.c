@@ -150,18 +150,12 @@ static bool is_hopeless(struct sampling *sampling) {
     return assessment->unequilibrated.for_long || worse || poor;
 }
 
-/// Replicas that are sampled side by side.
-static int threads_of(const struct inverse_problem *problem) {
-    const struct sampling_engine *engine = problem->engine;
-    return engine && engine->at_once > 0 ? engine->at_once : problem->threads;
-}
-
 /// Take samples by the plan, all of them or as many again.
 static enum status take(struct sampling *sampling, bool again) {
     struct inversion_state *state = sampling->state;
     struct replicas_plan *now = &sampling->plan;
     const struct inverse_listener *listener = sampling->listener;
-    const int threads = threads_of(state->problem);
+    const int threads = inverse_problem_threads(state->problem);
     if (again) {
         listener->report(listener->context, &sampling->progress); // it takes as long as all before
         TRY(mf_replicas_double(&state->replicas, now, threads, &sampling->progress, listener));

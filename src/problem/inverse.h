@@ -177,6 +177,12 @@ struct inverse_problem {
     bool trial; ///< a method is made only to refuse what it cannot fit, and makes no more than that
 };
 
+/// Replicas that run side by side: of another engine as many as it is given.
+static inline int inverse_problem_threads(const struct inverse_problem *problem) {
+    const struct sampling_engine *engine = problem->engine;
+    return engine && engine->at_once > 0 ? engine->at_once : problem->threads;
+}
+
 /// Curves and numbers that are to be found.
 size_t mf_inverse_unknown_count(const struct inverse_problem *problem);
 

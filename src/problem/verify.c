@@ -168,19 +168,14 @@ static size_t list_measured(void *context, size_t number, struct memory_span *sp
     return mf_measurement_spans(&((const struct work *)context)->replicas[number], spans);
 }
 
-/// Replicas that run side by side.
-static int threads_of(const struct inverse_problem *problem) {
-    const struct sampling_engine *engine = problem->engine;
-    return engine && engine->at_once > 0 ? engine->at_once : problem->threads;
-}
-
 static enum status run_until_look(struct work *work) {
-    return mf_parallel_try(&(struct parallel_tasks){.count = (size_t)work->parameters.replicas,
-                                                    .threads = threads_of(work->problem),
-                                                    .run = run_replica,
-                                                    .take = report_one,
-                                                    .context = work,
-                                                    .spans = list_measured});
+    return mf_parallel_try(
+        &(struct parallel_tasks){.count = (size_t)work->parameters.replicas,
+                                 .threads = inverse_problem_threads(work->problem),
+                                 .run = run_replica,
+                                 .take = report_one,
+                                 .context = work,
+                                 .spans = list_measured});
 }
 
 /// Samples of each replica at a look; 0 if they are too few for one: of some targets a single

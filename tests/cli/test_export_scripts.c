@@ -5,6 +5,7 @@
 // not in Debian: models of what their manuals say of each call (tests/shared/engines) have them.
 #include "base/rng.h"
 #include "export/export_units.h"
+#include "shared/exported_molecules.h"
 #include "shared/lammps_runs.h"
 #include "shared/length.h"
 #include "shared/run_program.h"
@@ -46,7 +47,7 @@ static const char scene[] =
     "\"measure\": {\"equilibration\": 300, \"samples\": 2, \"every\": 10}}\n";
 
 /// The same with tables in their place, and with pairs.
-static const char *const tables[][2] = {
+static const struct exported_molecules_table tables[] = {
     {"{\"law\": \"harmonic\", \"k\": 120, \"length\": 0.7}",
      "{\"law\": \"table\", \"file\": \"bond.tsv\"}"},
     {"{\"law\": \"harmonic\", \"k\": 8, \"angle\": 110}",
@@ -57,42 +58,8 @@ static const char *const tables[][2] = {
 };
 enum { TABLES = sizeof tables / sizeof *tables };
 
-static void replace(char *text, size_t size, const char *from, const char *to) {
-    char rest[8192];
-    char *at = strstr(text, from);
-    assert_non_null(at);
-    snprintf(rest, sizeof rest, "%s", at + strlen(from));
-    snprintf(at, size - (size_t)(at - text), "%s%s", to, rest);
-}
-
-static void write_tables(struct temporary_folder *folder) {
-    char bond[4096] = "# r[lambda] U[k_B.T_0]\n", angle[4096] = "# theta[degrees] U[k_B.T_0]\n",
-         dihedral[4096] = "# phi[degrees] U[k_B.T_0]\n";
-    for (int k = 0; k <= 40; k++) {
-        const double r = 0.3 + 0.02 * k, theta = (30 + 3.75 * k) * BONDED_RADIANS;
-        const double phi = (-180 + 9 * k) * BONDED_RADIANS;
-        snprintf(bond + strlen(bond), sizeof bond - strlen(bond), "%.4f %.8f\n", r,
-                 60 * pow(r - 0.7, 2) + 40 * pow(r - 0.7, 3));
-        snprintf(angle + strlen(angle), sizeof angle - strlen(angle), "%.4f %.8f\n", 30 + 3.75 * k,
-                 9 * pow(theta - 1.9, 2) - 2 * pow(theta - 1.9, 3));
-        snprintf(dihedral + strlen(dihedral), sizeof dihedral - strlen(dihedral), "%.4f %.8f\n",
-                 -180 + 9.0 * k, 1.7 * cos(3 * phi - 1.2) + 0.8 * sin(phi) + 0.3 * cos(7 * phi));
-    }
-    small_inputs_write(folder, "bond.tsv", bond, NULL, NULL);
-    small_inputs_write(folder, "angle.tsv", angle, NULL, NULL);
-    small_inputs_write(folder, "dihedral.tsv", dihedral, NULL, NULL);
-}
-
 static void make_result(struct temporary_folder *folder, bool with_tables) {
-    static struct run_program_result result;
-    char text[8192];
-    snprintf(text, sizeof text, "%s", scene);
-    for (int k = 0; with_tables && k < TABLES; k++)
-        replace(text, sizeof text, tables[k][0], tables[k][1]);
-    write_tables(folder);
-    small_inputs_write(folder, "scene.json", text, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
-    run_program_assert_code(&result, 0);
+    exported_molecules_simulate(folder, scene, tables, with_tables ? TABLES : 0);
 }
 
 // Comparison --------------------------------------------------------------------------------------
