@@ -77,7 +77,7 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
     const size_t *point = first->grid.known_point;
     struct imc_system system = first->grid.groups > 0 ? equations->of_response : equations->system;
     struct imc_solution solution;
-    double *x = NULL, *phi = NULL;
+    double *x = NULL, *phi = NULL, *reference = NULL;
     if (mf_inversion_is_low_rank(inversion))
         return step_low_rank(inversion, step);
     if (targets_ask(targets, TARGET_PRESSURE) && !equations->reduced) {
@@ -86,9 +86,13 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
     }
     NEW_ARRAY(x, system.size);
     NEW_ARRAY(phi, system.size);
-    for (size_t a = 0; a < system.size; a++)
+    NEW_ARRAY(reference, system.size);
+    for (size_t a = 0; a < system.size; a++) {
         phi[a] = inversion->course.phi[point[a]];
+        reference[a] = inversion->course.reference[point[a]];
+    }
     system.phi = phi;
+    system.reference = reference;
     CHECK(mf_imc_solve(&system, choose_strength(inversion), x, &solution));
     for (size_t a = 0; a < system.size; a++)
         step[point[a]] = x[a];
@@ -98,6 +102,7 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
 done:
     mf_memory_free(x);
     mf_memory_free(phi);
+    mf_memory_free(reference);
     return status;
 }
 

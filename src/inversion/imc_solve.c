@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/imc_solve.h"
 
+#include "base/memory.h"
+
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 
-/// Distance over which the potential may bend freely [λ]: features of liquids are wider.
-static const double smooth_length = 0.1;
+const double mf_imc_smooth_length = 0.1;
 
 /// Weight of |x|² beside the curvature: settles directions that are smooth and unseen. More of it
 /// keeps the ramp, which follows the noise of g, from drifting, and from the truth: with 0.01, 0.1
@@ -75,18 +76,22 @@ void mf_imc_solve_rows(const struct imc_system *s, gsl_matrix *response, gsl_vec
         gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &l.matrix, excess);
 }
 
-/// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)². In the last the neighbour is the cutoff, half
-/// a spacing away, where the curve is 0: the second difference of unequal steps, h and h/2.
-static void fill_differences(gsl_matrix *rows, size_t begin, size_t end, double scale) {
+/// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)²/(1 + steepness). In the last the neighbour is
+/// the cutoff, half a spacing away, where the curve is 0: the second difference of unequal steps, h
+/// and h/2.
+static void fill_differences(const struct imc_system *s, gsl_matrix *rows, size_t begin,
+                             size_t end) {
+    const double free = pow(mf_imc_smooth_length / s->spacing, 2);
     if (begin == end)
         return; // of pairs that there are not
-    for (size_t k = begin + 1; k + 1 < end; k++) {
-        gsl_matrix_set(rows, k - 1, k - 1, scale);
-        gsl_matrix_set(rows, k - 1, k, -2 * scale);
-        gsl_matrix_set(rows, k - 1, k + 1, scale);
+    for (size_t k = begin + 1; k < end; k++) {
+        const double scale = s->steepness ? free / (1 + s->steepness[k]) : free;
+        const bool last = k + 1 == end;
+        gsl_matrix_set(rows, k - 1, k - 1, last ? 4 * scale / 3 : scale);
+        gsl_matrix_set(rows, k - 1, k, last ? -4 * scale : -2 * scale);
+        if (!last)
+            gsl_matrix_set(rows, k - 1, k + 1, scale);
     }
-    gsl_matrix_set(rows, end - 2, end - 2, 4 * scale / 3);
-    gsl_matrix_set(rows, end - 2, end - 1, -4 * scale);
 }
 
 /// The same of a curve with free ends. Round a circle the last point is beside the first; one of
@@ -104,34 +109,45 @@ static void fill_free_differences(gsl_matrix *rows, size_t begin, size_t end, do
 
 void mf_imc_solve_prior(const struct imc_system *s, gsl_matrix *rows) {
     const size_t n = rows->size2;
-    const double scale = pow(smooth_length / s->spacing, 2);
     gsl_matrix_set_zero(rows);
     if (s->blocks == 0)
-        fill_differences(rows, 0, n, scale);
+        fill_differences(s, rows, 0, n);
     for (size_t b = 0, begin = 0; s->block && b < s->blocks; begin += s->block[b], b++)
         if (s->shape && s->shape[b].bend > 0)
             fill_free_differences(rows, begin, begin + s->block[b], pow(s->shape[b].bend, 2),
                                   s->shape[b].periodic);
         else
-            fill_differences(rows, begin, begin + s->block[b], scale);
+            fill_differences(s, rows, begin, begin + s->block[b]);
     for (size_t k = 0; k < n; k++)
         gsl_matrix_set(rows, n - 1 + k, k, sqrt(ridge));
 }
 
-/// What the last difference of a curve of pairs leaves of phi is to be made up for by x.
-static void fill_ends(struct workspace *w, double strength) {
-    const struct imc_system *s = w->system;
+/// Whether a row of the prior is the last difference of a curve of pairs, that to its cutoff.
+static void mark_ends(const struct imc_system *s, bool *is_end) {
     size_t end = s->blocks == 0 ? s->size : 0, begin = 0;
     for (size_t b = 0; b == 0 || b < s->blocks; b++, begin = end) {
         end += s->blocks > 0 ? s->block[b] : 0;
-        if (end - begin < 2 || (s->shape && s->shape[b].bend > 0))
-            continue;
-        const gsl_vector_const_view phi = gsl_vector_const_view_array(s->phi, s->size);
-        const gsl_vector_const_view row = gsl_matrix_const_row(w->rows, s->size + end - 2);
-        double bend;
-        gsl_blas_ddot(&row.vector, &phi.vector, &bend);
-        gsl_vector_set(w->rhs, s->size + end - 2, -sqrt(strength) * bend);
+        if (end - begin >= 2 && !(s->shape && s->shape[b].bend > 0))
+            is_end[end - 2] = true;
     }
+}
+
+enum status mf_imc_solve_prior_excess(const struct imc_system *s, const gsl_matrix *rows,
+                                      gsl_vector *excess) {
+    enum status status = STATUS_OK;
+    const size_t n = s->size;
+    bool *is_end = NULL;
+    NEW_ARRAY(is_end, rows->size1);
+    mark_ends(s, is_end);
+    for (size_t k = 0; k < rows->size1; k++) {
+        double sum = 0;
+        for (size_t a = 0; a < n; a++)
+            sum += gsl_matrix_get(rows, k, a) * (s->phi[a] - (is_end[k] ? 0 : s->reference[a]));
+        gsl_vector_set(excess, k, -sum);
+    }
+done:
+    mf_memory_free(is_end);
+    return status;
 }
 
 /// Sum of squares of the rows begin … end − 1.
@@ -320,10 +336,13 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
     gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
     mf_imc_solve_prior(system, &prior.matrix);
     solution->strength = strength;
-    if (!(strength > 0))
+    if (!(strength > 0)) {
         CHECK(find_strength(&w, &solution->strength));
-    else if (system->phi)
-        fill_ends(&w, strength);
+    } else if (system->phi) {
+        gsl_vector_view left = gsl_vector_subvector(w.rhs, n, 2 * n - 1);
+        CHECK(mf_imc_solve_prior_excess(system, &prior.matrix, &left.vector));
+        gsl_vector_scale(&left.vector, sqrt(strength));
+    }
     solution->misfit = solve_at(&w, solution->strength);
     solution->directions = count_directions(&w);
     for (size_t k = 0; k < n; k++)

@@ -28,12 +28,15 @@ struct imc_system {
     const double *variance;        ///< of the excess by statistics alone, shape [size], > 0
     const double *noise;      ///< L of the covariance V = L Lᵀ of the excess, lower triangle,
                               ///< shape [size, size]; NULL: the variances are all
+    const double *steepness;  ///< of curves of pairs: by how many k_B T the reference changes
+                              ///< within ℓ, shape [size]; NULL: 0
     double temperature;       ///< [k_B T_0]
     double spacing;           ///< of the bins [λ]
     const double *constraint; ///< p, shape [size]: x is to meet p·x = wanted exactly; or NULL
     double wanted;
-    const double *phi; ///< what x is added to, shape [size]: a curve of pairs and x end at 0
-                       ///< together, where `strength` is given; NULL: x does
+    const double *phi; ///< what x is added to, shape [size]: where `strength` is given, the prior
+                       ///< is that of phi + x − reference; NULL: of x
+    const double *reference; ///< shape [size]
 };
 
 struct imc_solution {
@@ -60,8 +63,19 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
 /// or NULL.
 void mf_imc_solve_rows(const struct imc_system *system, gsl_matrix *response, gsl_vector *excess);
 
+/// What the rows of the prior, as below, still ask of x: −D (phi − reference), that of the last
+/// difference of a curve of pairs −D phi, as the curve ends at 0 whatever the reference does.
+/// @param[out] excess  shape [2 size − 1]
+/// Fails: NO_MEMORY. Tested: test_imc_solve_blocks.
+enum status mf_imc_solve_prior_excess(const struct imc_system *system, const gsl_matrix *rows,
+                                      gsl_vector *excess) MUST_USE;
+
+/// Distance ℓ over which a curve of pairs may bend by k_B T, or by as much as the reference changes
+/// there [λ]: features of liquids are wider, and a repulsion of many k_B T bends as it rises.
+extern const double mf_imc_smooth_length;
+
 /// Rows of the smoothness prior in `rows`, shape [2 size − 1, size]: D, the second difference over
-/// a tenth of λ, or over the bins of a shape, and sqrt(ρ). A curve of pairs ends at 0 half a
+/// ℓ in 1 + steepness, or over the bins of a shape, and sqrt(ρ). A curve of pairs ends at 0 half a
 /// spacing beyond its last bin, at the cutoff, so that D of the ramp 1 − r/r_c is 0 and the ramp is
 /// free but for ρ; below its first bin it is free: no row reaches there. Each of several curves has
 /// its own. Where a step that knows nothing of the cutoff has left a jump there, smooth steps would

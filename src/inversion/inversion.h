@@ -133,9 +133,13 @@ bool mf_inversion_is_near(const struct inversion *inversion);
 /// Fails: NO_MEMORY. Tested: test_inversion_start.
 enum status mf_inversion_start(struct inversion_state *state, double *phi) MUST_USE;
 
-/// The same of molecules, whose structure by themselves is sampled first. Nothing changes for
-/// single beads, several states, and a start that the run file gives. Fails: as
-/// mf_inversion_intramolecular_find.
+/// The potential that the targets of a state alone say, whatever the fit begins with: the
+/// hypernetted chain's, or −k_B T ln g, as smooth as their errors allow. The prior of the most
+/// probable potential is that of its difference from this one. As mf_inversion_start.
+enum status mf_inversion_reference(struct inversion_state *state, double *phi) MUST_USE;
+
+/// Start and reference of molecules, whose structure by themselves is sampled first. Nothing
+/// changes for single beads and several states. Fails: as mf_inversion_intramolecular_find.
 enum status mf_inversion_start_of_molecules(struct inversion *inversion,
                                             const struct inverse_listener *listener) MUST_USE;
 

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+const double mf_inversion_chance = 1e-3;
+
 /// Share of the present samples in what all iterations near the target tell, at least.
 static const double min_share = 1.0 / 3;
 
@@ -70,10 +72,8 @@ static double count_independent(const struct inversion_state *state,
     return bins > 0 ? bins * bins / (bins + fmax(squares, 0)) : 0;
 }
 
-/// χ² by bin that noise alone exceeds in one of a thousand fits.
-static double find_probable(const struct inversion_state *state,
-                            const struct inversion_section *section) {
-    static const double chance = 1e-3;
+double mf_inversion_probable(const struct inversion_state *state,
+                             const struct inversion_section *section, double chance) {
     const double independent = count_independent(state, section);
     return independent > 0 ? gsl_cdf_chisq_Qinv(chance, independent) / independent : INFINITY;
 }
@@ -234,7 +234,8 @@ static double assess(struct inversion_state *state, struct inversion_section *se
     section->misfit = seen > 0 ? misfit / seen : 0;
     section->own_misfit = seen > 0 ? alone / seen : 0;
     // The potential follows the noise of the samples that it was made from.
-    section->probable = find_probable(state, section) * (1 + (seen > 0 ? followed / seen : 0));
+    section->probable = mf_inversion_probable(state, section, mf_inversion_chance) *
+                        (1 + (seen > 0 ? followed / seen : 0));
     section->own_noise = sqrt(wanted / bins) / section->peak;
     // p of a group need not be known better than that of its target, which has as many bins.
     section->precision = state->parameters->precision;

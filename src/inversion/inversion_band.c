@@ -145,8 +145,37 @@ static void add_square(struct inversion *inversion, double factor, const double 
             inversion->course.band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// The step from here: the most probable one, x = H⁻¹ Bᵀ L⁻¹ excess with W as large as Birge's
-/// factor has it, or that of the coefficients.
+/// asked += Dᵀ of what the prior still asks.
+static enum status add_prior(const struct inversion *inversion, struct imc_system system,
+                             gsl_vector *asked) {
+    enum status status = STATUS_OK;
+    const struct inversion_course *course = &inversion->course;
+    const size_t n = system.size, *point = inversion_grid(inversion)->known_point;
+    double *phi = NULL, *reference = NULL;
+    gsl_matrix *prior = gsl_matrix_alloc(2 * n - 1, n);
+    gsl_vector *left = gsl_vector_alloc(2 * n - 1);
+    CHECK(prior && left ? STATUS_OK : STATUS_NO_MEMORY);
+    NEW_ARRAY(phi, n);
+    NEW_ARRAY(reference, n);
+    for (size_t a = 0; a < n; a++) {
+        phi[a] = course->phi[point[a]];
+        reference[a] = course->reference[point[a]];
+    }
+    system.phi = phi;
+    system.reference = reference;
+    mf_imc_solve_prior(&system, prior);
+    CHECK(mf_imc_solve_prior_excess(&system, prior, left));
+    gsl_blas_dgemv(CblasTrans, pow(system.temperature, -2), prior, left, 1, asked);
+done:
+    gsl_matrix_free(prior);
+    gsl_vector_free(left);
+    mf_memory_free(phi);
+    mf_memory_free(reference);
+    return status;
+}
+
+/// The step from here: the most probable one, x = H⁻¹ [Bᵀ L⁻¹ excess − DᵀD (Φ − reference)] with W
+/// as large as Birge's factor has it, or that of the coefficients.
 static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
                              double birge, double *step) {
     enum status status = STATUS_OK;
@@ -164,6 +193,7 @@ static enum status find_step(const struct inversion *inversion, const struct imc
     CHECK(response && excess && asked ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, excess);
     gsl_blas_dgemv(CblasTrans, 1 / birge, response, excess, 0, asked);
+    CHECK(add_prior(inversion, *system, asked));
     multiply(inversion->course.band.inverse, n, asked->data, step);
 done:
     gsl_matrix_free(response);

@@ -4,11 +4,16 @@
 /// The excess of S, with its covariance W = L Lᵀ by target and samples, determines the potential by
 ///   F = Bᵀ B,   B = L⁻¹ C/k_B T,
 /// as in mf_imc_solve, whatever step led there. What the data leave open is held by the smoothness
-/// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or ten k_B T in
-/// all, counts as one standard error: the most probable step is x = H⁻¹ Bᵀ L⁻¹ excess, H = F +
-/// prior. Its error is that which the excess has if the errors of a target are each bin's own, V
-/// (inversion_noise.h), Σ = H⁻¹ (TᵀV T + prior) H⁻¹ with T = W⁻¹C/k_B T. U of groups may bend
-/// more where its target does, and the result is made as smooth as that (inversion_smooth.h).
+/// prior there with the weight 1/(k_B T)²: a bend by k_B T within a tenth of λ, or by as much as
+/// the reference changes there, or ten k_B T in all, counts as one standard error, of Φ less a
+/// reference Φ_0 that the targets alone give (mf_inversion_reference). So the most probable
+/// potential is one, wherever a fit begins, and the step to it x = H⁻¹ [Bᵀ L⁻¹ excess − DᵀD (Φ −
+/// Φ_0)], H = F + DᵀD. With a prior of each step what a start lacked was not made up for: of a WCA
+/// liquid, begun with soft beads, g was 3.5 times its target in the first bin, and Φ 1.6 k_B T too
+/// low with an error of 0.2. The error is that which the excess has if the errors of a target are
+/// each bin's own, V (inversion_noise.h), Σ = H⁻¹ (TᵀV T + DᵀD) H⁻¹ with T = W⁻¹C/k_B T. U of
+/// groups may bend more where its target does, and the result is made as smooth as that
+/// (inversion_smooth.h).
 ///
 /// Where more of the excess is left than V says, χ² by bin above 1, V is that much larger: a fit
 /// stops within 1.7 times the noise, and what it leaves is an error of Φ too.

@@ -36,6 +36,57 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
     return mean < now;
 }
 
+/// Bins of a stretch of a curve; those beside it share half of them.
+enum { STRETCH = 6 };
+
+/// Whether bins of a section meet their targets but for noise with such a chance, and for that of
+/// the samples that the potential follows.
+static bool stretch_agrees(const struct inversion_state *state, const double *excess, double factor,
+                           double chance, const struct inversion_section *stretch) {
+    const struct potential_grid *grid = &state->grid;
+    double sum = 0, seen = 0, followed = 0;
+    for (size_t a = stretch->known; a < stretch->known + stretch->known_count; a++) {
+        const double wanted = state->target.counts[grid->known_bin[a]];
+        if (!grid->seen[a])
+            continue;
+        seen++;
+        sum += pow(excess[a] - factor * wanted, 2) / state->variance[a];
+        followed += 1 - mf_inversion_target_variance(state, a) / state->variance[a];
+    }
+    return sum <= (seen + followed) * mf_inversion_probable(state, stretch, chance);
+}
+
+/// The first bin of a stretch of g(r) that does not; or SIZE_MAX.
+static size_t find_off(const struct inversion_state *state, const double *excess) {
+    const struct potential_grid *grid = &state->grid;
+    const double chance = mf_inversion_chance * STRETCH / (2.0 * (double)grid->pairs_known);
+    for (size_t pair = 0, first = 0; pair < grid->pairs; first += grid->known_of[pair++]) {
+        const size_t last = first + grid->known_of[pair];
+        const double factor = mf_inversion_factor_of(state, pair).missing;
+        for (size_t a = first; a < last; a += STRETCH / 2) {
+            struct inversion_section stretch = state->assessment.section[0];
+            stretch.known = a;
+            stretch.known_count = last - a < STRETCH ? last - a : STRETCH;
+            if (!stretch_agrees(state, excess, factor, chance, &stretch))
+                return a;
+        }
+    }
+    return SIZE_MAX;
+}
+
+bool mf_inversion_find_stretch(const struct inversion *inversion, double *r) {
+    const bool mean = mf_inversion_ends_with_mean(inversion);
+    for (size_t s = 0; s < inversion->states; s++) {
+        const struct inversion_state *state = &inversion->state[s];
+        const size_t known = find_off(state, mean ? state->pool.excess : state->excess);
+        if (known == SIZE_MAX)
+            continue;
+        *r = state->grid.r[state->grid.known_point[known]];
+        return true;
+    }
+    return false;
+}
+
 /// Whether that mean meets the targets of a section.
 static bool mean_meets_section(const struct inversion_state *state,
                                const struct inversion_section *section) {
@@ -82,10 +133,12 @@ static bool present_meets(const struct inversion *inversion) {
 /// these makes it better.
 static bool meets_targets(const struct inversion *inversion) {
     const struct inversion_basis *basis = &inversion->state->basis;
+    double r;
     if (basis->count > 0)
         return basis->miss <= mf_inverse_noise_margin;
-    return present_meets(inversion) ||
-           (mf_inversion_ends_with_mean(inversion) && mean_meets(inversion->state));
+    return (present_meets(inversion) ||
+            (mf_inversion_ends_with_mean(inversion) && mean_meets(inversion->state))) &&
+           !mf_inversion_find_stretch(inversion, &r);
 }
 
 /// Whether a method that takes the most probable step must go all of the way that g hardly sees.

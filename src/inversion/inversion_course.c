@@ -14,6 +14,7 @@ enum status mf_inversion_course_init(struct inversion_course *course, size_t kno
     NEW_ARRAY(course->phi, points);
     NEW_ARRAY(course->step, points);
     NEW_ARRAY(course->other_step, points);
+    NEW_ARRAY(course->reference, points);
     NEW_ARRAY(course->best.phi, points);
     NEW_ARRAY(course->best.step, points);
     NEW_ARRAY(course->best.other_step, points);
@@ -31,9 +32,9 @@ done:
 }
 
 void mf_inversion_course_clear(struct inversion_course *course) {
-    double *arrays[] = {course->phi,         course->step,         course->other_step,
-                        course->best.phi,    course->best.step,    course->best.other_step,
-                        course->best.counts, course->first_met_phi};
+    double *arrays[] = {course->phi,         course->step,      course->other_step,
+                        course->best.phi,    course->best.step, course->best.other_step,
+                        course->best.counts, course->reference, course->first_met_phi};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
     mf_inversion_band_clear(&course->band);
@@ -41,8 +42,9 @@ void mf_inversion_course_clear(struct inversion_course *course) {
 
 size_t mf_inversion_course_spans(struct inversion_course *course, size_t points, size_t bins,
                                  struct memory_span *span) {
-    double *curves[] = {course->phi, course->best.phi, course->best.step, course->best.other_step,
-                        course->first_met_phi};
+    double *curves[] = {course->phi,       course->best.phi,
+                        course->best.step, course->best.other_step,
+                        course->reference, course->first_met_phi};
     size_t n = 0;
     span[n++] = (struct memory_span){&course->progress, sizeof course->progress};
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)

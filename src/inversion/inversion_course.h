@@ -51,6 +51,7 @@ struct inversion_progress {
 /// Curves are of shape [points].
 struct inversion_course {
     double *phi, *step; ///< present potential and the step from it
+    double *reference;  ///< what the targets alone say, mf_inversion_reference
     double *other_step; ///< what to do if the step makes it worse
     bool has_other;     ///< else: half of it
     bool most_probable; ///< the step is the most probable one, near the noise
@@ -137,6 +138,14 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 /// 6000 and 12,000 bar, with stated errors of 400 to 700, and the truth is 104. Iterations that are
 /// not kept, or whose samples have not settled, do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
+
+/// Find a stretch of a g(r) that is off by more than noise, though all of it may agree: few bins
+/// drown among the others, as those that few pairs reach among those of all shells. Of the excess
+/// of all iterations near the targets, moved to the present potential, or of their mean, if the fit
+/// ends with it. Distributions of groups are not looked at so, since U is made smooth at the end.
+/// Tested: test_inversion_converged.
+/// @param[out] r  centre of its first bin [λ]
+bool mf_inversion_find_stretch(const struct inversion *inversion, double *r);
 
 /// Why a fit that has finished did not converge, in words.
 void mf_inversion_reason_write(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);

@@ -115,7 +115,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                 ? status
                 : mf_status_prefix(status, "states.%s", state->problem->name));
     }
-    return STATUS_OK;
+    return mf_inversion_reference(inversion->state, inversion->course.reference);
 }
 
 double *mf_inversion_damping(void *memory) {

@@ -19,6 +19,7 @@ struct imc_system mf_inversion_equations_of(const struct inversion_state *state)
                                .covariance = mf_inversion_response_values(state),
                                .excess = state->excess,
                                .variance = state->variance,
+                               .steepness = state->target.steepness,
                                .temperature = state->problem->scene.temperature,
                                .spacing = state->problem->targets.bins.width};
 }

@@ -43,6 +43,7 @@ static void report_what_is_missing(const struct inversion *inversion,
     const struct inversion_band_drift *ramp = &inversion->course.band.drifts.ramp;
     const struct inversion_band_drift farthest = mf_inversion_band_farthest(inversion);
     const int missed = find_missed(inversion);
+    double r;
     if (missed >= 0)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of %s is %.2g, its statistical error %.2g, and chi^2 per bin is %.2g "
@@ -65,6 +66,12 @@ static void report_what_is_missing(const struct inversion *inversion,
                  integrals->rms, integrals->noise);
     else if (inversion_grid(inversion)->groups > 0 && inversion_grid(inversion)->pairs == 0)
         report_groups(inversion, reason);
+    else if (mf_inversion_find_stretch(inversion, &r))
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g(r) agrees as a whole, but not from r = %.3g" STATUS_LENGTH
+                 " on: try more \"iterations\" or \"samples\", and see whether the errors of the "
+                 "target are right there",
+                 r);
     else if (isnan(ramp->drift))
         snprintf(
             reason, INVERSE_REASON_SIZE,

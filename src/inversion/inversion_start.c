@@ -22,9 +22,12 @@ static bool has_own(const struct inversion_state *state) {
     return false;
 }
 
+static bool knows_hnc(const struct inversion_state *state) {
+    return state->grid.pairs > 0 && mf_inversion_knows_intramolecular(state);
+}
+
 static bool is_from_hnc(const struct inversion_state *state) {
-    return state->grid.pairs > 0 && !has_own(state) && mf_inversion_knows_intramolecular(state) &&
-           state->parameters->start == INVERSION_FROM_HNC;
+    return knows_hnc(state) && !has_own(state) && state->parameters->start == INVERSION_FROM_HNC;
 }
 
 /// Variance of −k_B T ln g*, or ln p*, in the known bins; false if the target does not say it of
@@ -114,12 +117,17 @@ done:
     return status;
 }
 
+enum status mf_inversion_reference(struct inversion_state *state, double *phi) {
+    mf_potential_grid_mean_force(&state->grid, state->problem, phi);
+    if (knows_hnc(state))
+        TRY(add_indirect(state, phi));
+    return smooth(state, phi);
+}
+
 enum status mf_inversion_start(struct inversion_state *state, double *phi) {
     if (!is_from_hnc(state))
         return mf_inversion_start_again(state, phi);
-    mf_potential_grid_start(&state->grid, state->problem, phi);
-    TRY(add_indirect(state, phi));
-    TRY(smooth(state, phi));
+    TRY(mf_inversion_reference(state, phi));
     return restrict_to_basis(state, phi);
 }
 
@@ -128,10 +136,10 @@ enum status mf_inversion_start_of_molecules(struct inversion *inversion,
     struct inversion_state *state = inversion->state;
     double *phi = inversion->course.phi;
     const struct simulation_setup *scene = &state->problem->scene;
-    if (inversion->states > 1 || has_own(state) || state->parameters->start != INVERSION_FROM_HNC ||
-        mf_molecules_find(scene->interaction, scene->interactions) == NULL)
+    if (inversion->states > 1 || mf_molecules_find(scene->interaction, scene->interactions) == NULL)
         return STATUS_OK;
     TRY(mf_inversion_intramolecular_find(state, phi, listener));
+    TRY(mf_inversion_reference(state, inversion->course.reference));
     return mf_inversion_start(state, phi);
 }
 

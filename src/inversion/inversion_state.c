@@ -81,6 +81,7 @@ static enum status allocate(struct inversion_state *state) {
     NEW_ARRAY(target->error, bins);
     NEW_ARRAY(target->min, bins);
     NEW_ARRAY(target->common, known);
+    NEW_ARRAY(target->steepness, known);
     NEW_ARRAY(target->shape, state->grid.blocks);
     NEW_ARRAY(state->groups, state->grid.groups);
     NEW_ARRAY(state->excess, known);
@@ -190,7 +191,7 @@ void mf_inversion_state_clear(struct inversion_state *state) {
                         state->target.error,   state->target.min,    state->target.common,
                         state->excess,         state->variance,      state->bin_inefficiency,
                         state->pool.excess,    state->pool.variance, state->pool.phi,
-                        state->pressure.slope, state->inside.g};
+                        state->pressure.slope, state->inside.g,      state->target.steepness};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }

@@ -42,6 +42,7 @@ struct inversion_target {
     double *counts, *error;  ///< S of the target and its error
     double *min;             ///< S/ideal that counts as none
     double *common;          ///< error of S* by the factor of its pair type, shape [known]
+    double *steepness;       ///< of −ln g*, imc_system.steepness, shape [known]
     struct imc_shape *shape; ///< of each block
 };
 
@@ -133,6 +134,13 @@ void mf_inversion_assess(struct inversion_state *state);
 /// @param[in] excess  shape [known]
 double mf_inversion_chi_squared(const struct inversion_state *state, const double *excess,
                                 size_t begin, size_t end);
+
+/// The chance that noise alone makes a fit that has met its targets look as if it had not.
+extern const double mf_inversion_chance;
+
+/// χ² by bin of a section that noise alone exceeds with a chance; infinite if none of it was seen.
+double mf_inversion_probable(const struct inversion_state *state,
+                             const struct inversion_section *section, double chance);
 
 /// By how much of itself g of the samples is larger than that of a target as a whole, and the
 /// standard deviation that was expected of it.

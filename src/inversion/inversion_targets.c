@@ -39,6 +39,12 @@ static void set_pairs(struct inversion_state *state) {
     }
 }
 
+/// −ln g* of a known bin.
+static double potential_of_mean_force(const struct inversion_state *state, size_t a) {
+    const size_t bin = state->grid.known_bin[a];
+    return -log(fmax(state->target.counts[bin] / state->target.ideal[bin], state->target.min[bin]));
+}
+
 /// The error of S* that the bins of a pair type have in common: by their normalisation, which is
 /// known within `factor_error`.
 static void set_common_errors(struct inversion_state *state) {
@@ -50,6 +56,22 @@ static void set_common_errors(struct inversion_state *state) {
         if (grid->seen[a])
             state->target.common[a] =
                 state->target.counts[bin] * factor_error[bin / targets->bins.count];
+    }
+}
+
+/// By how much −ln g* changes within ℓ round each bin of a pair type; at its ends by as much in
+/// what there is of ℓ.
+static void set_steepness(struct inversion_state *state, size_t begin, size_t end) {
+    const double width = state->problem->targets.bins.width;
+    const size_t half = (size_t)fmax(1, round(0.5 * mf_imc_smooth_length / width));
+    for (size_t a = begin; a < end; a++) {
+        const size_t low = a > begin + half ? a - half : begin;
+        const size_t high = a + half < end ? a + half : end - 1;
+        const double change =
+            potential_of_mean_force(state, high) - potential_of_mean_force(state, low);
+        if (high > low)
+            state->target.steepness[a] =
+                fabs(change) * mf_imc_smooth_length / ((double)(high - low) * width);
     }
 }
 
@@ -123,6 +145,8 @@ void mf_inversion_count_targets(struct inversion_state *state) {
     }
     set_pairs(state);
     set_common_errors(state);
+    for (size_t block = 0, first = 0; block < grid->pairs; first += grid->known_of[block++])
+        set_steepness(state, first, first + grid->known_of[block]);
     for (size_t g = 0; g < grid->groups; g++) {
         set_group(state, &grid->group[g]);
         enter_group(state, g);

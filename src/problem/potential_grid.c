@@ -338,25 +338,42 @@ void mf_potential_grid_many_body_clear(const struct potential_grid *grid,
             mf_density_energy_clear(energy_of(grid, g, many_body));
 }
 
+/// −k_B T ln g* in a known bin.
+static double mean_force(const struct potential_grid *grid, const struct inverse_problem *problem,
+                         size_t n) {
+    // A bin without pairs beyond the core is as high as one with the threshold's few.
+    const double g = fmax(problem->targets.target[TARGET_RDF].value[grid->known_bin[n]],
+                          problem->core_threshold);
+    return -problem->scene.temperature * log(g);
+}
+
 void mf_potential_grid_start_pairs(const struct potential_grid *grid,
                                    const struct inverse_problem *problem, double *phi) {
     for (size_t n = 0; n < grid->pairs_known; n++) {
         const size_t point = grid->known_point[n], pair = point / (grid->bins + 1);
         const struct curve *start = problem->unknown[UNKNOWN_POTENTIAL].start[pair];
-        // A bin without pairs beyond the core is as high as one with the threshold's few.
-        const double g = fmax(problem->targets.target[TARGET_RDF].value[grid->known_bin[n]],
-                              problem->core_threshold);
-        phi[point] =
-            start ? mf_curve_value(start, grid->r[point]) : -problem->scene.temperature * log(g);
+        phi[point] = start ? mf_curve_value(start, grid->r[point]) : mean_force(grid, problem, n);
     }
     mf_potential_grid_complete_pairs(grid, phi);
+}
+
+static void start_groups(const struct potential_grid *grid, double *phi) {
+    for (size_t g = 0; g < grid->groups; g++)
+        mf_bonded_grid_start(&grid->group[g].own, phi + grid->group[g].point);
 }
 
 void mf_potential_grid_start(const struct potential_grid *grid,
                              const struct inverse_problem *problem, double *phi) {
     mf_potential_grid_start_pairs(grid, problem, phi);
-    for (size_t g = 0; g < grid->groups; g++)
-        mf_bonded_grid_start(&grid->group[g].own, phi + grid->group[g].point);
+    start_groups(grid, phi);
+}
+
+void mf_potential_grid_mean_force(const struct potential_grid *grid,
+                                  const struct inverse_problem *problem, double *phi) {
+    for (size_t n = 0; n < grid->pairs_known; n++)
+        phi[grid->known_point[n]] = mean_force(grid, problem, n);
+    mf_potential_grid_complete_pairs(grid, phi);
+    start_groups(grid, phi);
 }
 
 double mf_potential_grid_ramp(const struct potential_grid *grid, size_t point) {

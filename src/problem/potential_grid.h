@@ -109,6 +109,10 @@ void mf_potential_grid_start_pairs(const struct potential_grid *grid,
 void mf_potential_grid_start(const struct potential_grid *grid,
                              const struct inverse_problem *problem, double *phi);
 
+/// The same whatever starts the problem has: what the targets alone say.
+void mf_potential_grid_mean_force(const struct potential_grid *grid,
+                                  const struct inverse_problem *problem, double *phi);
+
 /// The virial of pairs, by the bin that they are in and the value that makes it: the mean over a
 /// bin's shell of −r ∂Φ'(r)/∂Φ_b, so that W = Σ_a S_a Σ_b virial_ab Φ_b + what the core's stiffness
 /// adds. Through the tables that the kernels read, so that spline and core are those of a

@@ -99,6 +99,9 @@ enum status mf_verify_sections_find(const struct inverse_problem *problem,
 
 // Judging -----------------------------------------------------------------------------------------
 
+/// That noise alone makes a result look as if it did not agree.
+static const double false_alarms = 1e-3;
+
 static double known_or_0(double error) {
     return isfinite(error) ? error : 0;
 }
@@ -133,10 +136,9 @@ static double find_share(const struct targets *targets, const struct observed *o
     return (noise * noise - of_targets * of_targets) / (of_verification * of_verification);
 }
 
-/// χ² by bin that noise alone exceeds in one of a thousand fits. Errors that are known by few
-/// values are as often too small: F instead of χ².
-static double find_probable(const struct statistics_independence *known) {
-    static const double chance = 1e-3;
+/// χ² by bin that noise alone exceeds with a chance. Errors that are known by few values are as
+/// often too small: F instead of χ².
+static double find_probable(const struct statistics_independence *known, double chance) {
     static const double many = 200; // F is that of known errors, and GSL's inverse fails at times
     const double numbers = fmax(1, known->numbers);
     if (!(known->freedom >= 1))
@@ -154,35 +156,81 @@ static double target_variance(const struct target *target, size_t k, double valu
     return error > 0 ? error * error * fmax(1, value / counts) : 0;
 }
 
-/// χ² with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins have in common:
-/// Σ x²/σ² − (Σ c x/σ²)²/(1 + Σ c²/σ²).
+/// A distribution beside its target.
+struct comparison {
+    const struct targets *targets;
+    const struct target *target;
+    const double *value, *error;
+    double share;
+};
+
+/// What χ² is made of, with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins
+/// have in common: Σ x²/σ² − (Σ c x/σ²)²/(1 + Σ c²/σ²).
+struct sums {
+    double square, along, common, bins;
+};
+
+/// The sums over values first … end − 1, of which so much of c is taken off.
+static struct sums add_up(const struct comparison *of, size_t first, size_t end, double factor) {
+    struct sums sums = {0};
+    for (size_t k = first; k < end; k++) {
+        const double variance = target_variance(of->target, k, of->value[k]) +
+                                (1 + of->share) * pow(known_or_0(of->error[k]), 2);
+        const double common = common_error(of->targets, of->target, k);
+        const double difference = of->value[k] - of->target->value[k] - factor * common;
+        if (!isfinite(difference) || !(variance > 0))
+            continue;
+        sums.square += difference * difference / variance;
+        sums.along += common * difference / variance;
+        sums.common += common * common / variance;
+        sums.bins++;
+    }
+    return sums;
+}
+
+/// Values of a stretch; those beside it share half of them.
+enum { STRETCH = 6 };
+
+/// The stretch that is farthest off, in what noise alone exceeds with the chance over all of them.
+/// Few values drown among the others, as those that few pairs reach. Of g(r): U of groups is made
+/// smooth at the end.
+static void find_stretch(const struct comparison *of, const struct verify_section *section,
+                         double factor, struct verify_agreement *agreement) {
+    const size_t end = section->first + section->count;
+    struct statistics_independence known = section->known;
+    const double independent = known.numbers / (double)section->count;
+    agreement->stretch = (struct verify_stretch){.probable = 1};
+    for (size_t first = section->first; first < end; first += STRETCH / 2) {
+        const size_t last = end - first < STRETCH ? end : first + STRETCH;
+        const struct sums sums = add_up(of, first, last, factor);
+        known.numbers = independent * sums.bins;
+        const double probable =
+            find_probable(&known, false_alarms * STRETCH / (2.0 * (double)section->count));
+        const double misfit = sums.bins > 0 ? sums.square / sums.bins : 0;
+        if (misfit * agreement->stretch.probable > agreement->stretch.misfit * probable)
+            agreement->stretch = (struct verify_stretch){first, misfit, probable};
+    }
+}
+
 static struct verify_agreement assess(const struct targets *targets,
                                       const struct verify_section *section,
                                       const struct observed *observed, double share) {
-    const struct target *const target = &targets->target[section->kind];
-    const double *const value = observed->value[section->kind], *const error =
-                                                                    observed->error[section->kind];
-    struct target part = *target;
+    const struct comparison of = {targets, &targets->target[section->kind],
+                                  observed->value[section->kind], observed->error[section->kind],
+                                  share};
+    const struct sums sums = add_up(&of, section->first, section->first + section->count, 0);
+    const double factor = sums.along / (1 + sums.common);
+    struct target part = *of.target;
     part.count = section->count;
     part.value += section->first;
     part.error += section->first;
     struct verify_agreement agreement = {
-        .distance = mf_targets_distance(&part, value + section->first, error + section->first),
-        .probable = find_probable(&section->known)};
-    double sum = 0, bins = 0, along = 0, common = 0;
-    for (size_t k = section->first; k < section->first + section->count; k++) {
-        const double variance =
-            target_variance(target, k, value[k]) + (1 + share) * pow(known_or_0(error[k]), 2);
-        const double difference = value[k] - target->value[k];
-        if (!isfinite(difference) || !(variance > 0))
-            continue;
-        const double factor = common_error(targets, target, k);
-        sum += difference * difference / variance;
-        along += factor * difference / variance;
-        common += factor * factor / variance;
-        bins++;
-    }
-    agreement.misfit = bins > 0 ? (sum - along * along / (1 + common)) / bins : 0;
+        .distance =
+            mf_targets_distance(&part, of.value + section->first, of.error + section->first),
+        .misfit = sums.bins > 0 ? (sums.square - sums.along * factor) / sums.bins : 0,
+        .probable = find_probable(&section->known, false_alarms)};
+    if (section->kind == TARGET_RDF)
+        find_stretch(&of, section, factor, &agreement);
     return agreement;
 }
 
@@ -206,7 +254,7 @@ void mf_verify_agree(const struct targets *targets, const struct verify_sections
     for (size_t s = 0; s < sections->count; s++) {
         struct verify_agreement *const worst = &agreement[sections->section[s].kind];
         const struct verify_agreement own = assess(targets, &sections->section[s], observed, share);
-        if (worst->probable == 0 || own.misfit * worst->probable > worst->misfit * own.probable)
+        if (worst->probable == 0 || verify_agreement_off(&own) > verify_agreement_off(worst))
             *worst = own;
     }
     assess_number(targets, TARGET_PRESSURE, observed, share, &agreement[TARGET_PRESSURE]);

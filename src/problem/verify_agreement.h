@@ -29,15 +29,31 @@ struct verify_sections {
     struct verify_section section[VERIFY_MAX_SECTIONS];
 };
 
+/// A few values beside each other.
+struct verify_stretch {
+    size_t first;    ///< of the target's values
+    double misfit;   ///< χ² by bin
+    double probable; ///< what noise alone exceeds in one of a thousand over all stretches
+};
+
 /// Of the section of a kind of targets that is least probable.
 struct verify_agreement {
     struct target_distance distance;
     double misfit;   ///< χ² by bin
     double probable; ///< what noise alone exceeds in one of a thousand; 0: nothing was assessed
+    struct verify_stretch stretch; ///< that is farthest off
 };
 
+/// How far it is off, 1 being what noise alone exceeds: as a whole, or in a stretch of it.
+static inline double verify_agreement_off(const struct verify_agreement *agreement) {
+    const double whole = agreement->probable > 0 ? agreement->misfit / agreement->probable : 0;
+    const struct verify_stretch *stretch = &agreement->stretch;
+    const double part = stretch->probable > 0 ? stretch->misfit / stretch->probable : 0;
+    return whole > part ? whole : part;
+}
+
 static inline bool verify_agreement_holds(const struct verify_agreement *agreement) {
-    return !(agreement->misfit > agreement->probable);
+    return !(verify_agreement_off(agreement) > 1);
 }
 
 /// Find the sections of what is to be found of a problem. Fails: NO_MEMORY.

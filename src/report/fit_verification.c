@@ -194,21 +194,31 @@ static void report_state(const struct thermodynamics_summary *found, const struc
 }
 
 /// Report a distribution that agrees in the samples of the fit and not in the verification.
-static void report_structure(const char *name, const struct verify_agreement *agreement,
+/// @param[in] bins  of g(r); NULL: of a group
+static void report_structure(const char *name, const struct rdf_bins *bins,
+                             const struct verify_agreement *agreement,
                              const struct verification *verification, double temperature,
                              const struct units *units, char reason[INVERSE_REASON_SIZE]) {
     static const double beyond_doubt = 2;
     const struct target_distance *distance = &agreement->distance;
-    char state[STATE_SIZE], cause[FIT_STEP_TEXT_SIZE], bins[80] = "";
+    const struct verify_stretch *stretch = &agreement->stretch;
+    char state[STATE_SIZE], cause[FIT_STEP_TEXT_SIZE], where[100] = "", unit[UNITS_NAME_SIZE];
     report_state(&verification->thermodynamics, units, state);
     find_cause(verification, temperature, units, cause);
-    if (distance->rms < beyond_doubt * distance->noise) // which the few bins with most of it hide
-        snprintf(bins, sizeof bins, "; in single bins more: chi^2 by bin is %.2g, by chance %.2g",
+    // What few bins have most of, the rms hides.
+    if (!(agreement->misfit > agreement->probable))
+        snprintf(where, sizeof where,
+                 "; more from r = %.3g%.8s on: chi^2 by bin is %.2g, by chance %.2g",
+                 mf_units_factor(units, "lambda") *
+                     mf_rdf_bins_centre(bins, stretch->first % bins->count),
+                 mf_units_suffix(units, "lambda", unit), stretch->misfit, stretch->probable);
+    else if (distance->rms < beyond_doubt * distance->noise)
+        snprintf(where, sizeof where, "; in single bins more: chi^2 by bin is %.2g, by chance %.2g",
                  agreement->misfit, agreement->probable);
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with %.24s, but its verification is off by %.2g (statistical "
              "error %.2g%s) at %.60s: %s",
-             name, distance->rms, distance->noise, bins, state, cause);
+             name, distance->rms, distance->noise, where, state, cause);
 }
 
 /// Whether the kinetic temperature is off; the structure is then another, even within its noise.
@@ -261,14 +271,14 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
         const int kind = mf_group_kind_target(order);
         if (verify_agreement_holds(&agreement[kind]))
             continue;
-        report_structure(mf_targets_name(kind), &agreement[kind], verification, temperature, units,
-                         reason);
+        report_structure(mf_targets_name(kind), &fitted->bins, &agreement[kind], verification,
+                         temperature, units, reason);
         return true;
     }
     if (!targets_ask(fitted, TARGET_RDF) || verify_agreement_holds(&agreement[TARGET_RDF]))
         return contradicts_temperature(verification, temperature, units, reason);
-    report_structure(several ? "g(r) of all pair types" : "g(r)", &agreement[TARGET_RDF],
-                     verification, temperature, units, reason);
+    report_structure(several ? "g(r) of all pair types" : "g(r)", &fitted->bins,
+                     &agreement[TARGET_RDF], verification, temperature, units, reason);
     return true;
 }
 

@@ -317,6 +317,7 @@ static void assert_constrained_minimum(const struct imc_system *system, double s
 static void test_imc_solve_makes_up_for_a_jump_at_the_cutoff(void **state) {
     (void)state;
     double covariance[SIZE][SIZE] = {{0}}, excess[SIZE] = {0}, variance[SIZE], phi[SIZE], x[SIZE];
+    double reference[SIZE];
     struct imc_solution solution;
     for (int a = 0; a < SIZE; a++)
         covariance[a][a] = temperature;
@@ -327,13 +328,49 @@ static void test_imc_solve_makes_up_for_a_jump_at_the_cutoff(void **state) {
     assert_ok(mf_imc_solve(&system, 1, x, &solution));
     for (int a = 0; a < SIZE; a++)
         assert_close(x[a], 0, 1e-12);
+    // The reference has the jump, too: it counts as little at the end.
+    memcpy(reference, phi, sizeof reference);
     system.phi = phi;
+    system.reference = reference;
     assert_ok(mf_imc_solve(&system, 1, x, &solution));
     print_message("%.4f and %.4f at the end\n", phi[SIZE - 2] + x[SIZE - 2],
                   phi[SIZE - 1] + x[SIZE - 1]);
     assert_true(fabs(phi[SIZE - 1] + x[SIZE - 1]) < 0.2 * phi[SIZE - 1]);
     assert_true(fabs(x[SIZE - 2]) < 0.3 * phi[SIZE - 1]);
     assert_true(fabs(x[SIZE / 2]) < 0.01);
+}
+
+/// With a reference the most probable potential is one, wherever a linear fit begins.
+static void test_imc_solve_ends_where_the_reference_says_whatever_the_start(void **state) {
+    (void)state;
+    double covariance[SIZE][SIZE], excess[SIZE], moved[SIZE], variance[SIZE], reference[SIZE];
+    double phi[SIZE], end[SIZE], x[SIZE], steepness[SIZE];
+    struct imc_solution solution;
+    make_covariance(covariance);
+    fill(variance, 4);
+    make_excess(covariance, variance, 1, 3, excess);
+    for (int k = 0; k < SIZE; k++) {
+        reference[k] = 0.3 * sin(0.4 * k) * (1 - (k + 0.5) / SIZE);
+        steepness[k] = 20.0 / (1 + k);
+    }
+    for (int start = 0; start < 3; start++) {
+        for (int k = 0; k < SIZE; k++)
+            phi[k] = start * (k % 3) + 5 * start / (1.0 + k);
+        for (int a = 0; a < SIZE; a++) {
+            moved[a] = excess[a]; // that of phi = 0
+            for (int b = 0; b < SIZE; b++)
+                moved[a] -= covariance[a][b] * phi[b] / temperature;
+        }
+        struct imc_system system = make_system(covariance, moved, variance);
+        system.phi = phi;
+        system.reference = reference;
+        system.steepness = steepness;
+        assert_ok(mf_imc_solve(&system, 0.7, x, &solution));
+        for (int k = 0; k < SIZE && start > 0; k++)
+            assert_close(phi[k] + x[k], end[k], 1e-8);
+        for (int k = 0; k < SIZE; k++)
+            end[k] = phi[k] + x[k];
+    }
 }
 
 static void test_imc_solve_meets_a_constraint_at_the_least_cost(void **state) {
@@ -434,6 +471,7 @@ int main(void) {
         cmocka_unit_test(test_imc_solve_stays_bounded_when_the_excess_cannot_be_removed),
         cmocka_unit_test(test_imc_solve_leaves_the_ramp_free_when_it_is_smooth),
         cmocka_unit_test(test_imc_solve_makes_up_for_a_jump_at_the_cutoff),
+        cmocka_unit_test(test_imc_solve_ends_where_the_reference_says_whatever_the_start),
         cmocka_unit_test(test_imc_solve_meets_a_constraint_at_the_least_cost),
         cmocka_unit_test(
             test_imc_solve_follows_all_directions_when_it_is_weak_and_none_when_strong),

@@ -3,7 +3,10 @@
 // When a fit has come to its end.
 #include "inversion/inversion.h"
 
+#include "base/rng.h"
 #include "shared/testing.h"
+
+#include <math.h>
 
 /// A fit of pairs, and perhaps of groups, that agrees with its targets and has settled.
 struct end {
@@ -16,8 +19,10 @@ struct end {
 static const double far = 100;
 
 static struct inversion *make_end(struct end *end, size_t groups) {
+    static size_t none[] = {0};
     *end = (struct end){
-        .state = {.problem = &end->problem, .grid = {.pairs = 1, .groups = groups}},
+        .state = {.problem = &end->problem,
+                  .grid = {.pairs = 1, .groups = groups, .known_of = none}},
         .inversion = {.problem = &end->problem,
                       .state = &end->state,
                       .states = 1,
@@ -104,6 +109,8 @@ static void test_pressure_of_each_state_must_settle(void **state) {
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
     struct inversion_band_drift *pressure = inversion->course.band.drifts.pressure;
+    struct inversion_state two[2] = {end.state, end.state};
+    inversion->state = two;
     inversion->states = 2;
     inversion->course.band.drifts.ramp.drift = 0;
     pressure[1].open = 1;
@@ -203,8 +210,91 @@ static void test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agree
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
+enum { BINS = 40, DRAWS = 2000 };
+
+/// A curve of bins that scatter by themselves, with excesses of normal noise, and one more.
+struct curve_of_bins {
+    struct end end;
+    size_t known_of[1], known_bin[BINS], known_point[BINS];
+    bool seen[BINS];
+    double place[BINS], target[BINS], error[BINS], excess[BINS], variance[BINS];
+    struct comoments counts;
+};
+
+static struct inversion *make_curve(struct curve_of_bins *curve) {
+    struct inversion *inversion = make_end(&curve->end, 0);
+    struct inversion_state *one = &curve->end.state;
+    assert_ok(mf_comoments_init(&curve->counts, BINS));
+    for (uint32_t sample = 0; sample < DRAWS; sample++) {
+        double value[BINS];
+        for (uint32_t k = 0; k < BINS; k += 4)
+            mf_rng_normal4(mf_rng_philox(3, RNG_INITIAL, sample, k, 0), value + k);
+        mf_comoments_add(&curve->counts, value);
+    }
+    curve->known_of[0] = BINS;
+    for (size_t k = 0; k < BINS; k++) {
+        curve->known_bin[k] = curve->known_point[k] = k;
+        curve->place[k] = 0.01 * (double)k;
+        curve->seen[k] = true;
+        curve->target[k] = 1000;
+        curve->error[k] = sqrt(0.9);
+        curve->variance[k] = 1; // a tenth is that of the samples
+    }
+    one->grid.blocks = 1;
+    one->grid.pairs_known = BINS;
+    one->grid.known_point = curve->known_point;
+    one->grid.r = curve->place;
+    one->grid.known_of = curve->known_of;
+    one->grid.known_bin = curve->known_bin;
+    one->grid.seen = curve->seen;
+    one->replicas.counts = curve->counts;
+    one->target.counts = curve->target;
+    one->target.error = curve->error;
+    one->excess = curve->excess;
+    one->variance = curve->variance;
+    one->assessment.sections = 1;
+    one->assessment.section[0] =
+        (struct inversion_section){.known_count = BINS, .bins = BINS, .inefficiency = 1};
+    return inversion;
+}
+
+static void draw_excess(struct curve_of_bins *curve, uint32_t draw) {
+    for (uint32_t k = 0; k < BINS; k += 4)
+        mf_rng_normal4(mf_rng_philox(5, RNG_INITIAL, draw, k, 0), curve->excess + k);
+}
+
+/// A bin that is seven errors off makes χ² of forty bins 2.2, and the fit does not end: false
+/// alarms are one of a thousand, the power with five, six and seven errors what χ² of six says.
+static void test_fit_does_not_end_where_a_stretch_of_its_curve_is_off(void **state) {
+    (void)state;
+    static struct curve_of_bins curve;
+    struct inversion *inversion = make_curve(&curve);
+    size_t found[4] = {0};
+    double r;
+    for (uint32_t draw = 0; draw < DRAWS; draw++)
+        for (int errors = 0; errors < 4; errors++) {
+            draw_excess(&curve, draw);
+            curve.excess[7] += errors > 0 ? 4 + errors : 0;
+            found[errors] += mf_inversion_find_stretch(inversion, &r);
+        }
+    print_message("of %d: %zu without, %zu, %zu, %zu with 5, 6, 7 errors\n", DRAWS, found[0],
+                  found[1], found[2], found[3]);
+    assert_true(found[0] <= DRAWS / 200);
+    assert_true(found[2] > DRAWS / 2);
+    assert_true(found[3] > 0.9 * DRAWS);
+    for (size_t k = 0; k < BINS; k++)
+        curve.excess[k] = k == 7 ? 7 : 0;
+    assert_true(mf_inversion_find_stretch(inversion, &r));
+    assert_true(r <= 0.07 && r + 0.06 > 0.07);
+    assert_false(mf_inversion_has_converged(inversion, true));
+    curve.seen[7] = false;
+    assert_true(mf_inversion_has_converged(inversion, true));
+    mf_comoments_clear(&curve.counts);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_fit_does_not_end_where_a_stretch_of_its_curve_is_off),
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
         cmocka_unit_test(test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel),
         cmocka_unit_test(test_fit_with_groups_ends_though_its_misfit_swings),

@@ -64,6 +64,24 @@ static double normal_of(uint32_t trial, uint32_t bin) {
     return normal[0];
 }
 
+/// One bin of a hundred that is off by eight noises makes χ² by bin 1.6, by chance up to 1.9.
+static void test_agreement_looks_at_stretches(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 0.003, 0.004, 50);
+    of.sections.section[0].known.freedom = 1e6;
+    for (int k = 0; k < BINS; k++)
+        of.value[k] += k % 2 ? 0.005 : -0.005;
+    assert_true(holds(&of, 0));
+    of.value[31] = 1 + 8 * 0.005;
+    assert_false(holds(&of, 0));
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_true(agreement[TARGET_RDF].misfit < agreement[TARGET_RDF].probable);
+    assert_true(agreement[TARGET_RDF].stretch.first <= 31 &&
+                agreement[TARGET_RDF].stretch.first + 6 > 31);
+}
+
 /// A verification a thousand times as exact as the fit's samples sees what their noise made of the
 /// potential, and nothing else.
 static void test_agreement_knows_the_noise_of_the_fit(void **state) {
@@ -212,6 +230,7 @@ static void test_agreement_is_of_the_least_probable_section(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_agreement_depends_on_how_many_bins_are_independent),
+        cmocka_unit_test(test_agreement_looks_at_stretches),
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit),
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit_in_the_pressure),
         cmocka_unit_test(test_agreement_is_wrong_in_one_of_a_thousand),

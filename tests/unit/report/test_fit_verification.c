@@ -32,7 +32,7 @@ static bool contradicts(const struct verification *verification, const struct ta
     for (int kind = 0; kind < TARGETS; kind++) {
         const struct target_distance *const worst = &verification->worst[kind];
         agreement[kind] = (struct verify_agreement){
-            *worst, worst->noise > 0 ? pow(worst->rms / worst->noise, 2) : 0, 9};
+            *worst, worst->noise > 0 ? pow(worst->rms / worst->noise, 2) : 0, 9, {0}};
     }
     agreement[TARGET_PRESSURE].distance = verification->distance[TARGET_PRESSURE];
     return mf_fit_verification_contradicts(verification, agreement, fitted, 1.5, 3, NULL, reason);
@@ -58,7 +58,8 @@ static void test_fit_verification_tells_what_an_rms_hides(void **state) {
     struct verify_agreement agreement[TARGETS] = {0};
     char reason[INVERSE_REASON_SIZE];
     const struct verification found = make(0.0015, 1.5, 3);
-    agreement[TARGET_RDF] = (struct verify_agreement){{.rms = 0.0015, .noise = 0.002}, 4.2, 1.6};
+    agreement[TARGET_RDF] =
+        (struct verify_agreement){{.rms = 0.0015, .noise = 0.002}, 4.2, 1.6, {0}};
     assert_true(
         mf_fit_verification_contradicts(&found, agreement, &only_rdf, 1.5, 3, NULL, reason));
     assert_contains(reason, "off by 0.0015 (statistical error 0.002; in single bins more: chi^2 by "
