@@ -78,6 +78,7 @@ static const struct inner scene_objects[] = {
     {"particles", "number and placement of particles", "particles", TOPIC_ONE},
     {"conservative", "potential, {\"law\": …}; in a mixture one for each pair type", "conservative",
      TOPIC_PARTS},
+    {"known", "of a fit: potential beside the one sought, likewise", "conservative", TOPIC_PARTS},
     {"dissipative", "friction weight, likewise", "dissipative", TOPIC_PARTS},
     {"dissipative_transverse", "friction weight perpendicular to the pair, likewise", "dissipative",
      TOPIC_PARTS},
