@@ -186,6 +186,44 @@ static void test_an_interrupted_fit_has_the_same_bits(void **state) {
     results_assert_same("whole", "pieces", same);
 }
 
+/// Two fluids whose repulsions differ, and what is known of them by as much: they share the rest.
+static void test_states_share_the_rest_when_each_has_a_known_part(void **state) {
+    small_inputs_write(*state, "weak.json", scene, "\"a\": 25", "\"a\": 20");
+    twins_simulate("weak.json", "weak");
+    small_inputs_change(*state, "run.json", "\"target\": {\"rdf\": {\"file\": \"truth/rdf.tsv\"}}",
+                        "\"states\": {\"strong\": {\"target\": {\"rdf\": {\"file\": "
+                        "\"truth/rdf.tsv\"}}}, \"weak\": {\"target\": {\"rdf\": {\"file\": "
+                        "\"weak/rdf.tsv\"}}, \"scene\": {\"known\": {\"a\": 10}}}}");
+    run_fit("run.json", "out");
+    // Measured with five seeds: 0.02 to 0.14; the two known parts differ by 2.5 k_B T.
+    assert_true(results_number("out/summary.json", "truth_rms") < 0.4);
+    results_assert_number("out/used.json", "states.weak.scene.known.a", 10);
+}
+
+/// Dimers: a bond that is looked for, too, and pairs that are excluded from both parts.
+static void test_bonds_are_found_beside_a_known_part(void **state) {
+    static const char dimers[] =
+        "\"box\": [5, 5, 5], \"time_step\": 0.01, \"particles\": {}, \"molecules\": {\"dimer\": "
+        "{\"count\": 125, \"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": \"stick\"}}}, "
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}";
+    small_inputs_change(*state, "truth.json", SETUP, dimers);
+    small_inputs_change(*state, "truth.json", "\"rdf\"",
+                        "\"bonds\": {\"stick\": {\"law\": \"harmonic\", \"k\": 100, \"length\": "
+                        "0.6}}, \"bond_lengths\": {\"bins\": 40}, \"rdf\"");
+    twins_simulate("truth.json", "dimers");
+    small_inputs_change(*state, "run.json", SETUP, dimers);
+    small_inputs_change(*state, "run.json", "{\"rdf\": {\"file\": \"truth/rdf.tsv\"}}",
+                        "{\"rdf\": {\"file\": \"dimers/rdf.tsv\"}, \"bond_lengths\": {\"stick\": "
+                        "{\"file\": \"dimers/bond_lengths.tsv\"}}}");
+    small_inputs_change(*state, "run.json", "\"unknowns\": {",
+                        "\"unknowns\": {\"bonds\": "
+                        "{\"stick\": {}}, ");
+    run_fit("run.json", "out");
+    const double z = rms_deviation("out/potential.tsv", true);
+    print_message("(phi - truth)/error %.2f rms\n", z);
+    assert_true(z < 1.3);
+}
+
 /// Methods that simulate candidates have both parts, too.
 static void test_a_search_finds_the_rest(void **state) {
     small_inputs_change(*state, "run.json", "\"truth\": " TRUTH,
@@ -233,6 +271,8 @@ int main(void) {
         TEST(test_compare_shows_both_parts),
         TEST(test_used_and_explain_tell_what_is_known),
         TEST(test_an_interrupted_fit_has_the_same_bits),
+        TEST(test_states_share_the_rest_when_each_has_a_known_part),
+        TEST(test_bonds_are_found_beside_a_known_part),
         TEST(test_a_search_finds_the_rest),
         TEST(test_what_is_wrong_is_said_in_one_line),
     };
