@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The potential that was found, on the potentials of the iterations before it, light to dark.
-# Reads potential.tsv: r, phi, force, phi_error (nan where not known), perhaps truth, r[nm], phi[kJ/mol]
+# Reads potential.tsv: r, phi, force, phi_error (nan where not known), perhaps truth, total, r[nm], phi[kJ/mol]
 # and, if it is there, potential_history.tsv: r, then one column an iteration.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"

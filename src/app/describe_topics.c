@@ -69,10 +69,16 @@ static const struct inner omega_objects[] = {
     {NULL, NULL, NULL, TOPIC_ONE},
 };
 
+static const struct inner sum_objects[] = {
+    {"of", "the laws, {\"core\": {\"law\": …}, …}", "conservative", TOPIC_NAMED},
+    {NULL, NULL, NULL, TOPIC_ONE},
+};
+
 static const struct inner scene_objects[] = {
     {"particles", "number and placement of particles", "particles", TOPIC_ONE},
     {"conservative", "potential, {\"law\": …}; in a mixture one for each pair type", "conservative",
      TOPIC_PARTS},
+    {"known", "of a fit: potential beside the one sought, likewise", "conservative", TOPIC_PARTS},
     {"dissipative", "friction weight, likewise", "dissipative", TOPIC_PARTS},
     {"dissipative_transverse", "friction weight perpendicular to the pair, likewise", "dissipative",
      TOPIC_PARTS},
@@ -122,15 +128,11 @@ static const struct {
     const char *topic;
     const struct inner *objects;
 } contents[] = {
-    {"run", run_objects},
-    {"scene", scene_objects},
-    {"unknowns", unknowns_objects},
-    {"potential", potential_objects},
-    {"omega", omega_objects},
-    {"map", map_objects},
-    {"memory", memory_objects},
-    {"molecule", molecule_objects},
-    {"many_body", many_body_objects},
+    {"run", run_objects},           {"scene", scene_objects},
+    {"unknowns", unknowns_objects}, {"potential", potential_objects},
+    {"omega", omega_objects},       {"map", map_objects},
+    {"memory", memory_objects},     {"sum", sum_objects},
+    {"molecule", molecule_objects}, {"many_body", many_body_objects},
 };
 
 static const struct topic fixed_topics[] = {

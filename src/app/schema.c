@@ -314,6 +314,7 @@ static void write_member(struct json_writer *writer, const char *chief, const st
     mf_json_begin(writer, chief); // whose value is said once, for all
     mf_json_end(writer);
     write_fields(writer, topic);
+    write_objects(writer, topic->name);
     mf_json_end(writer);
     close_keys(writer);
     mf_json_end(writer);
@@ -435,8 +436,7 @@ static void write_root(struct json_writer *writer) {
 
 enum status mf_schema_print(FILE *stream, const struct topic *topics, size_t count) {
     struct json_writer *writer = mf_json_writer_create();
-    if (writer == NULL)
-        return mf_status_fail(STATUS_NO_MEMORY, "out of memory");
+    TRY(writer ? STATUS_OK : STATUS_NO_MEMORY);
     mf_json_write_text(writer, "$schema", "http://json-schema.org/draft-07/schema#");
     mf_json_write_text(writer, "title", "run files, scene files and maps of mesofit");
     write_root(writer);

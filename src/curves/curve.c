@@ -6,10 +6,16 @@
 #include "curves/expression_law.h"
 #include "curves/formula.h"
 #include "curves/sampled.h"
+#include "curves/sum.h"
 
 const struct curve_family *const mf_curve_potentials[] = {
-    &mf_formula_lennard_jones, &mf_formula_soft_repulsion, &mf_formula_gaussian,
-    &mf_expression_potential,  &mf_sampled_family,         NULL,
+    &mf_formula_lennard_jones,
+    &mf_formula_soft_repulsion,
+    &mf_formula_gaussian,
+    &mf_expression_potential,
+    &mf_sampled_family,
+    &mf_sum_family,
+    NULL,
 };
 
 const struct curve_family *const mf_curve_omegas[] = {

@@ -110,7 +110,7 @@ static double omega_value(const void *parameters, double r) {
     }
 
 static const struct field potential_fields[] =
-    FIELDS("r below which the potential is a straight line", "distance beyond which it is 0");
+    FIELDS("r below which the potential is a straight line", "it is 0 beyond");
 
 static const struct field omega_fields[] =
     FIELDS("r_0: omega is 0 at and below it", "r_c: omega is 0 beyond it");

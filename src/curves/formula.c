@@ -34,7 +34,7 @@ static const struct field lennard_jones_fields[] = {
     {"sigma", FIELD_NUMBER, LJ(sigma), .initial = 1, POSITIVE, .unit = "lambda",
      .help = "distance at which the unshifted potential is 0"},
     {"cutoff", FIELD_NUMBER, LJ(cutoff), .initial = 2.5, POSITIVE, .unit = "lambda",
-     .help = "distance beyond which it is 0"},
+     .help = "it is 0 beyond"},
     FIELD_END,
 };
 
@@ -62,7 +62,7 @@ static const struct field soft_repulsion_fields[] = {
     {"a", FIELD_NUMBER, SOFT(a), .initial = 25, ANY_NUMBER, .unit = "k_B T_0/lambda",
      .help = "largest force"},
     {"cutoff", FIELD_NUMBER, SOFT(cutoff), .initial = 1, POSITIVE, .unit = "lambda",
-     .help = "distance beyond which it is 0"},
+     .help = "it is 0 beyond"},
     FIELD_END,
 };
 
@@ -94,7 +94,7 @@ static const struct field gaussian_fields[] = {
     {"sigma", FIELD_NUMBER, GAUSS(sigma), .initial = 1, POSITIVE, .unit = "lambda",
      .help = "width: epsilon/e at r = sigma"},
     {"cutoff", FIELD_NUMBER, GAUSS(cutoff), .initial = 3.2, POSITIVE, .unit = "lambda",
-     .help = "distance beyond which it is 0"},
+     .help = "it is 0 beyond"},
     FIELD_END,
 };
 

@@ -36,7 +36,7 @@ static const char *const formats[] = {"columns", "votca", NULL};
     {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "", .help = "columns r, value"}
 #define CUTOFF                                                                                     \
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .initial = 0, .minimum = 0, .maximum = DBL_MAX,       \
-     .unit = "lambda", .help = "distance beyond which it is 0; 0: the last r"}
+     .unit = "lambda", .help = "it is 0 beyond; 0: the last r"}
 // clang-format on
 static const struct field fields[] = {
     FILE_NAME,

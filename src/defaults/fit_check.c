@@ -20,7 +20,7 @@ static enum status begin_one(const struct fit_file *fit, const struct inverse_pr
     CLEARED_BY(mf_unknowns_clear) struct unknowns unknowns = {0};
     CLEARED_BY(mf_unknowns_laws_clear) struct unknowns_laws laws = {0};
     CLEARED_BY(mf_measurement_clear) struct measurement measurement = {0};
-    TRY(mf_unknowns_init(&unknowns, problem));
+    TRY(mf_units_convert_message(&fit->scene.units, mf_unknowns_init(&unknowns, problem)));
     TRY(mf_unknowns_laws_start(&unknowns, &laws));
     const struct measurement_setup setup = {.targets = &problem->compared,
                                             .potential = laws.table[UNKNOWN_POTENTIAL],

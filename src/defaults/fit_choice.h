@@ -25,6 +25,12 @@ struct fit_choice {
     bool finds[UNKNOWNS]; ///< what is looked for
 };
 
+/// The range of g(r), or that of a known part of the potential if it is longer [λ].
+static inline double fit_choice_reach(const struct fit_choice *choice) {
+    const double known = choice->fit->scene.known.table.cutoff;
+    return choice->range > known ? choice->range : known;
+}
+
 /// Keep a line for the person who reads what was chosen.
 void mf_fit_choice_note(const struct fit_choice *choice, const char *format, ...)
     __attribute__((format(printf, 2, 3)));

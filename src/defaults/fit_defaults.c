@@ -146,13 +146,16 @@ static void choose_count(struct fit_choice *c) {
     uint64_t given = 0;
     if (scene->given.count)
         return;
-    const double range = fmax(c->range, target_files_etd(&c->fit->files)->grid.r_maximum);
+    const double range =
+        fmax(fit_choice_reach(c), target_files_etd(&c->fit->files)->grid.r_maximum);
     const double needed = c->density * pow(margin * range, c->dimensions);
     c->count = ceil(fmax(min, needed));
     mf_fit_choice_note(
         c, "%.0f particles: %s%s", c->count,
-        c->count > min ? "the box is 2.2 times as wide as the range of the targets"
-                       : "enough for the statistics, and the box is wider than twice the range",
+        c->count <= min ? "enough for the statistics, and the box is wider than twice the range"
+        : range > c->range && fit_choice_reach(c) == range
+            ? "the box is 2.2 times as wide as the known part reaches"
+            : "the box is 2.2 times as wide as the range of the targets",
         target_files_rdf(&c->fit->files)->member[0].parameters.particles > 0
             ? ""
             : "; g(r) is taken for that of as many, since its \"particles\" are not given");

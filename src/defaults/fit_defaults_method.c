@@ -98,7 +98,8 @@ double mf_fit_defaults_precision(const struct fit_choice *c) {
 /// A system that is large enough for the range.
 static double choose_particles(const struct fit_choice *c) {
     static const double min = 700, margin = 2.15, distortion = 0.05;
-    const double wanted = ceil(fmax(min, c->density * pow(margin * c->range, c->dimensions)));
+    const double wanted =
+        ceil(fmax(min, c->density * pow(margin * fit_choice_reach(c), c->dimensions)));
     return (double)mf_composition_min_particles(c->rdf->composition, (int64_t)wanted, distortion);
 }
 

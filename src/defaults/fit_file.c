@@ -106,7 +106,8 @@ static void refuse_foreign(struct json_object *scene, int unknown) {
     if (unknown & SCENE_FITS_POTENTIAL)
         mf_json_refuse(
             scene, "conservative",
-            "it is to be found; give an initial law as \"start\" of \"unknowns.potential\"");
+            "it is to be found; give an initial law as \"start\" of \"unknowns.potential\", and a "
+            "part that is known as \"scene.known\"");
     if (unknown & SCENE_FITS_OMEGA)
         mf_json_refuse(scene, "dissipative",
                        "it is to be found; give an initial law as \"start\" of \"unknowns.omega\"");
@@ -214,6 +215,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
     problem->numbers = fit->numbers;
     memcpy(problem->number, fit->number, sizeof problem->number);
     mf_fit_numbers_lend(&fit->scene, problem);
+    problem->knows_elsewhere = mf_fit_engine_knows_more(fit);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const struct fit_unknown *from = &fit->unknown[kind];
         struct unknown *unknown = &problem->unknown[kind];

@@ -207,6 +207,7 @@ void mf_fit_numbers_lend(const struct scene *scene, struct inverse_problem *prob
     }
     problem->weight = (struct inverse_law){densities, many_body->weight};
     problem->density_energy = (struct inverse_law){densities, many_body->energy};
+    problem->known = (struct inverse_law){scene->known.curves, scene->known.curve};
 }
 
 static void add_all(struct entries *entries, const struct scene *scene) {

@@ -209,6 +209,17 @@ static const char partial[] =
     "This is the potential alone: the forces that the engine of the fit knew beside it are missing "
     "here, and with them g(r) and pressure are others";
 
+/// What the tables are of, where a part of the potential was known; NULL: all of it was found.
+static const char *say_known(const struct export_model *model) {
+    if (model->scene.known.curves == 0)
+        return model->partial ? partial : NULL;
+    return model->partial
+               ? "The tables are of the potential that was found and of the known part beside it "
+                 "(\"known\" of used.json); what the engine of the fit had besides is missing here"
+               : "The tables are of the potential that was found and of the known part beside it "
+                 "(\"known\" of used.json)";
+}
+
 static void print_readme(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
     const struct export_error *error = &job->grids.error;
@@ -222,8 +233,8 @@ static void print_readme(const struct export_job *job, FILE *stream) {
             job->engine->commands_of ? job->engine->commands_of(job) : job->engine->commands);
     mf_export_dynamics_print(job, "", stream);
     fprintf(stream, "\n");
-    if (model->partial)
-        fprintf(stream, "%s.\n\n", partial);
+    if (say_known(model))
+        fprintf(stream, "%s.\n\n", say_known(model));
     fprintf(stream,
             "Units: %s, %s, %s, %s, %s. Time step %.6g %s; mesofit's own was %.6g %s: %s.\n\n",
             units->length_name, units->time_name, units->energy_name, units->temperature_name,
@@ -276,8 +287,9 @@ static void print_result(const struct export_job *job, struct progress *to) {
         mf_progress_print(to, "%s", job->engine->versions);
     if (job->model->warning[0])
         mf_progress_print(to, "mesofit: warning: %s", job->model->warning);
-    if (job->model->partial)
-        mf_progress_print(to, "mesofit: warning: %s", partial);
+    if (say_known(job->model))
+        mf_progress_print(to, "%s%s", job->model->partial ? "mesofit: warning: " : "",
+                          say_known(job->model));
     mf_progress_print(to,
                       "%zu rows; as %s reads them within %.2g k_B T and %.2g of the largest force "
                       "from r = %.4g %s on",

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "curves/bonded_table.h"
 #include "curves/sampled.h"
+#include "curves/sum.h"
 #include "export/export_columns.h"
 #include "export/export_density.h"
 #include "export/export_friction.h"
@@ -212,9 +213,10 @@ static enum status check_scene(const struct export_model *model) {
                                          model->folder, what, why);
 }
 
-/// A curve through the points with `sign` errors added; what is set and has no error moves with the
-/// first point that has one, and the last stays 0.
-static enum status make_curve(const struct export_columns *points, int sign, struct table *table) {
+/// A curve through the points with `sign` errors added, and what is known beside it, or NULL; what
+/// is set and has no error moves with the first point that has one, and the last stays 0.
+static enum status make_curve(const struct export_columns *points, int sign,
+                              const struct curve *known, struct table *table) {
     enum status status = STATUS_OK;
     const size_t rows = points->rows;
     const double *r = points->values, *phi = r + rows, *error = phi + rows;
@@ -229,7 +231,7 @@ static enum status make_curve(const struct export_columns *points, int sign, str
         moved[k] = phi[k] + (sign && isfinite(own) ? sign * own : 0);
     }
     CHECK(mf_sampled_create(&curve, r, moved, rows));
-    status = mf_table_init_potential(table, &curve);
+    status = known ? mf_sum_tabulate(table, &curve, known) : mf_table_init_potential(table, &curve);
     mf_curve_clear(&curve);
 done:
     mf_memory_free(moved);
@@ -253,6 +255,7 @@ static enum status read_potentials(struct export_model *model) {
     struct table part[EXPORT_CURVES][COMPOSITION_MAX_PAIRS] = {{{0}}};
     model->bands = true;
     for (int pair = 0; pair < pairs; pair++) {
+        const struct curve *known = mf_scene_law_curve(&model->scene.known, pair);
         struct export_columns points;
         char path[OUTPUT_PATH_SIZE], name[2 * COMPOSITION_PAIR_NAME_SIZE],
             of[COMPOSITION_PAIR_NAME_SIZE];
@@ -261,7 +264,7 @@ static enum status read_potentials(struct export_model *model) {
         file_of(model, name, path);
         CHECK(mf_export_columns_read(&points, path, &model->scene.units, wanted));
         for (int c = 0; c < EXPORT_CURVES && status == STATUS_OK; c++)
-            status = make_curve(&points, sign[c], &part[c][pair]);
+            status = make_curve(&points, sign[c], known, &part[c][pair]);
         model->bands = model->bands && has_errors(&points);
         mf_export_columns_clear(&points);
         if (status != STATUS_OK)

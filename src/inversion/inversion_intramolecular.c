@@ -61,12 +61,14 @@ static enum status assess(struct inversion_state *state, const double *counts, i
 enum status mf_inversion_intramolecular_find(struct inversion_state *state, double *phi,
                                              const struct inverse_listener *listener) {
     enum status status = STATUS_OK;
-    const struct potential_grid *grid = &state->grid;
+    struct potential_grid *grid = &state->grid;
+    const struct inverse_law beside = grid->beside;
     double *counts = NULL, nearer = 0, pairs = 0, min = INFINITY;
     if (!has_molecules(state) || grid->pairs == 0 || state->box.dimensions != 3)
         return STATUS_OK;
     NEW_ARRAY(counts, grid->pair_bins);
     memset(phi, 0, grid->pair_points * sizeof *phi);
+    grid->beside = (struct inverse_law){0}; // pairs of free molecules do not act at all
     CHECK(mf_inversion_tabulate(state));
     // What is of no use is seen at once.
     for (int round = 1; round <= ROUNDS && min > independent; round++) {
@@ -78,6 +80,7 @@ enum status mf_inversion_intramolecular_find(struct inversion_state *state, doub
     if (nearer <= max_nearer * (nearer + pairs))
         state->inside.min = min;
 done:
+    grid->beside = beside;
     mf_memory_free(counts);
     return status;
 }

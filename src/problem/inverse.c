@@ -62,9 +62,8 @@ static const char *const omega_bases[] = {"none", "start", NULL};
 
 const struct field mf_inverse_potential_fields[] = {
     CURVE(potential_curves, potential_bases, BASE_AUTO,
-          "what the curve is added to; auto: \"start\", else hypernetted-chain inversion of g, or "
-          "where that fails mean-force, -k_B T ln g; default none with \"minimum\" or "
-          "\"maximum\"",
+          "what the curve is added to; auto: \"start\", else hypernetted-chain, where that fails "
+          "mean-force, -k_B T ln g, less \"known\"; none with \"minimum\" or \"maximum\"",
           6.5, "k_B T_0") // ends at the target's range
     FIELD_END,
 };

@@ -125,6 +125,12 @@ struct inverse_law {
     const struct curve *curve; ///< shape [curves]; family NULL: none
 };
 
+/// The curve of a pair type, or NULL.
+static inline const struct curve *inverse_law_curve(const struct inverse_law *law, int pair) {
+    const struct curve *curve = law->curve + (law->curves > 1 ? pair : 0);
+    return law->curves > 0 && curve->family ? curve : NULL;
+}
+
 /// How a method that moves variables writes U(q): as functions times coefficients that are added to
 /// the Boltzmann inversion of the target (problem/parametrisation_bonded.h).
 struct bonded_shape {
@@ -165,7 +171,9 @@ struct inverse_problem {
     struct inverse_number number[INVERSE_MAX_NUMBERS];
     struct inverse_law law[UNKNOWNS];          ///< those of the scene that are known
     struct inverse_law weight, density_energy; ///< of its local densities, a curve for each
-    size_t bonded;                             ///< groups of which U(q) is to be found
+    struct inverse_law known; ///< what acts between pairs beside the potential that is looked for
+    bool knows_elsewhere;     ///< samples are of an engine that has the known part by itself
+    size_t bonded;            ///< groups of which U(q) is to be found
     struct bonded_unknown group[INVERSE_MAX_BONDED];
     const char *mode[PAIR_MEMORY_MAX_MODES]; ///< names of the modes of memory; borrowed
     struct simulation_setup scene;           ///< all but the unknowns; its composition is set

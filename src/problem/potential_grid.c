@@ -3,7 +3,6 @@
 
 #include "base/memory.h"
 #include "curves/core.h"
-#include "curves/sampled.h"
 #include "problem/group_kind.h"
 
 #include <math.h>
@@ -143,14 +142,16 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     *grid = (struct potential_grid){
         .pairs = groups_alone ? 0 : (size_t)mf_composition_pairs(&problem->scene.composition),
         .bins = bins->count,
-        .groups = problem->bonded,
-        .stiffness = problem->core_stiffness};
+        .groups = problem->bonded};
+    if (!problem->knows_elsewhere)
+        grid->beside = problem->known;
     grid->blocks = grid->pairs + grid->groups;
     grid->points = grid->pair_points = grid->pairs * (bins->count + 1);
     grid->all_bins = grid->pair_bins = grid->pairs * bins->count;
     NEW_ARRAY(grid->core, grid->pairs);
     NEW_ARRAY(grid->empty, grid->pairs);
     NEW_ARRAY(grid->known_of, grid->blocks);
+    NEW_ARRAY(grid->stiffness, grid->pairs);
     NEW_ARRAY(grid->group, grid->groups);
     for (size_t pair = 0; pair < grid->pairs; pair++)
         CHECK(find_core(grid, problem, pair));
@@ -163,7 +164,10 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     index_known(grid, problem);
     NEW_ARRAY(grid->r, grid->points);
     place_points(grid, bins);
+    for (size_t pair = 0; pair < grid->pairs; pair++)
+        grid->stiffness[pair] = mf_potential_grid_stiffness(grid, problem, pair);
     CHECK(mf_potential_grid_find_shared(grid, problem));
+    CHECK(mf_potential_grid_check_known(grid, problem));
 done:
     if (status != STATUS_OK)
         mf_potential_grid_clear(grid);
@@ -174,6 +178,7 @@ void mf_potential_grid_clear(struct potential_grid *grid) {
     mf_memory_free(grid->core);
     mf_memory_free(grid->empty);
     mf_memory_free(grid->known_of);
+    mf_memory_free(grid->stiffness);
     mf_memory_free(grid->known_point);
     mf_memory_free(grid->known_bin);
     mf_memory_free(grid->well_known);
@@ -226,7 +231,7 @@ void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double 
         }
         const double slope = find_slope(grid, pair, r, block);
         mf_core_fill(r + empty, block + empty, first - empty, slope, 0);
-        mf_core_fill(r, block, empty, slope, grid->stiffness);
+        mf_core_fill(r, block, empty, slope, grid->stiffness[pair]);
         block[grid->bins] = 0;
     }
 }
@@ -250,32 +255,6 @@ void mf_potential_grid_close(const struct potential_grid *grid, size_t group, do
     double *block = values + own->point;
     if (mf_group_kind_is_periodic(own->own.unknown->order))
         block[own->own.known] = block[0];
-}
-
-/// Of one block.
-static enum status make_part(const struct potential_grid *grid, const double *phi, size_t pair,
-                             struct table *part) {
-    const size_t begin = mf_potential_grid_block(grid, pair);
-    struct curve curve;
-    TRY(mf_sampled_create(&curve, grid->r + begin, phi + begin, grid->bins + 1));
-    const enum status status = mf_table_init_potential(part, &curve);
-    mf_curve_clear(&curve);
-    return status;
-}
-
-enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
-                                    struct table *table) {
-    enum status status = STATUS_OK;
-    struct table part[COMPOSITION_MAX_PAIRS] = {{0}};
-    if (grid->pairs == 1)
-        return make_part(grid, phi, 0, table);
-    for (size_t pair = 0; pair < grid->pairs; pair++)
-        CHECK(make_part(grid, phi, pair, &part[pair]));
-    CHECK(mf_table_stack(table, part, (int)grid->pairs));
-done:
-    for (size_t pair = 0; pair < grid->pairs; pair++)
-        mf_table_clear(&part[pair]);
-    return status;
 }
 
 /// The curve of a group that is a term of molecules; NULL of a local density.
@@ -338,13 +317,15 @@ void mf_potential_grid_many_body_clear(const struct potential_grid *grid,
             mf_density_energy_clear(energy_of(grid, g, many_body));
 }
 
-/// −k_B T ln g* in a known bin.
+/// −k_B T ln g* in a known bin, less what is known there.
 static double mean_force(const struct potential_grid *grid, const struct inverse_problem *problem,
                          size_t n) {
     // A bin without pairs beyond the core is as high as one with the threshold's few.
     const double g = fmax(problem->targets.target[TARGET_RDF].value[grid->known_bin[n]],
                           problem->core_threshold);
-    return -problem->scene.temperature * log(g);
+    const size_t point = grid->known_point[n];
+    return -problem->scene.temperature * log(g) -
+           mf_potential_grid_known(problem, point / (grid->bins + 1), point % (grid->bins + 1));
 }
 
 void mf_potential_grid_start_pairs(const struct potential_grid *grid,
@@ -409,7 +390,7 @@ static enum status add_virials(const struct potential_grid *grid, const struct r
         changed[k] = phi[k];
     changed[point] += change;
     mf_potential_grid_complete(grid, changed);
-    TRY(make_part(grid, changed, pair, &table));
+    TRY(mf_potential_grid_table_pair(grid, changed, pair, &table));
     for (size_t a = 0; a < bins->count; a++)
         virial[(pair * bins->count + a) * grid->known] +=
             factor * shell_virial(&table, bins, a, dimensions);

@@ -32,7 +32,8 @@ struct potential_grid {
     bool *seen;          ///< shape [known]: this problem's target tells of the bin, and not only
                          ///< another state's
     double *r;           ///< shape [points] [λ], of angles [degrees]
-    double stiffness;
+    double *stiffness;   ///< shape [pairs]: of the core; 0 where what is known keeps pairs away
+    struct inverse_law beside; ///< what acts with it in samples; none if an engine has it itself
     /// The straight line of f(ρ), which is a potential of pairs: f less s ρ, and Φ plus 2 s w(r),
     /// are the same energy. Shape [known], or NULL without both.
     struct {
@@ -46,7 +47,8 @@ struct potential_grid {
 };
 
 /// Pairs are left out if groups are looked for and the pairs' potential is not. Fails: NO_MEMORY;
-/// BAD_INPUT if a target is nowhere above the threshold, or as mf_bonded_grid_init.
+/// BAD_INPUT if a target is nowhere above the threshold, as mf_potential_grid_check_known, or as
+/// mf_bonded_grid_init.
 enum status mf_potential_grid_init(struct potential_grid *grid,
                                    const struct inverse_problem *problem) MUST_USE;
 void mf_potential_grid_clear(struct potential_grid *grid);
@@ -79,9 +81,29 @@ void mf_potential_grid_remove_shared(const struct potential_grid *grid, double *
 /// errors.
 void mf_potential_grid_close(const struct potential_grid *grid, size_t group, double *values);
 
-/// Table of the pairs for the kernels from a completed phi. Fails: NO_MEMORY.
+/// Table of the pairs for the kernels from a completed phi, with what is known beside it. Fails:
+/// NO_MEMORY. Tested: test_potential_known.
 enum status mf_potential_grid_table(const struct potential_grid *grid, const double *phi,
                                     struct table *table) MUST_USE;
+
+/// The same of what is looked for alone, and of one pair type.
+enum status mf_potential_grid_table_sought(const struct potential_grid *grid, const double *phi,
+                                           struct table *table) MUST_USE;
+enum status mf_potential_grid_table_pair(const struct potential_grid *grid, const double *phi,
+                                         size_t pair, struct table *table) MUST_USE;
+
+/// What the known part counts as in a bin of its pair type, of a uniform density in it:
+/// −k_B T ln⟨exp(−Φ/k_B T)⟩, and no more than a height at which there are no pairs.
+double mf_potential_grid_known(const struct inverse_problem *problem, size_t pair, size_t bin);
+
+/// Curvature of the core of a pair type: 0 where the known part rises into it by
+/// more than that by itself.
+double mf_potential_grid_stiffness(const struct potential_grid *grid,
+                                   const struct inverse_problem *problem, size_t pair);
+
+/// Refuse a known part that is so high where the target has many pairs. Fails: BAD_INPUT.
+enum status mf_potential_grid_check_known(const struct potential_grid *grid,
+                                          const struct inverse_problem *problem) MUST_USE;
 
 /// The molecules with the laws that are looked for. What is not is borrowed, and the rest is to be
 /// cleared with mf_potential_grid_molecules_clear, also after a failure.
@@ -101,7 +123,7 @@ void mf_potential_grid_many_body_clear(const struct potential_grid *grid,
                                        struct many_body *many_body);
 
 /// Where the pairs of a fit begin: the problem's start curves, or the potentials of mean force
-/// −k_B T ln g*; shape [pair_points].
+/// −k_B T ln g* less what is known; shape [pair_points].
 void mf_potential_grid_start_pairs(const struct potential_grid *grid,
                                    const struct inverse_problem *problem, double *phi);
 

@@ -34,8 +34,8 @@ const struct field mf_verify_fields[] = {
     {"samples", FIELD_INTEGER, MEMBER(plan.samples), .initial = 50, .minimum = 1, .maximum = 1e8,
      .unit = "", .help = "samples of each replica"},
     {"end_early", FIELD_CHOICE, MEMBER(end_early), .choices = no_or_yes, .initial = 0, .unit = "",
-     .help = "end when differences from targets are known within a tenth, and T within a third of "
-             "a per cent; default yes where the program chooses the samples"},
+     .help = "end when differences from targets are known within a tenth, T within 0.3 %; default "
+             "yes where the program chooses the samples"},
     {"every", FIELD_INTEGER, MEMBER(plan.every), .initial = 25, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "interval between samples"},
     FIELD_END,

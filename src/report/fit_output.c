@@ -2,6 +2,7 @@
 #include "report/fit_output.h"
 
 #include "base/memory.h"
+#include "curves/sum.h"
 #include "io/configuration.h"
 #include "io/votca.h"
 
@@ -16,6 +17,16 @@ static double *truth_at(const struct fit_file *fit, enum unknown_kind kind, size
     double *values = mf_memory_zeroed(points, sizeof *values);
     for (size_t k = 0; values && truth && k < points; k++)
         values[k] = mf_curve_value(truth, r[k]);
+    return values;
+}
+
+/// The potential and what is known beside it at `r`, if anything is; the caller frees it.
+static double *total_at(const struct fit_file *fit, size_t pair, const double *r, const double *phi,
+                        size_t points) {
+    const struct curve *known = inverse_law_curve(&fit->problem.known, (int)pair);
+    double *values = mf_memory_zeroed(points, sizeof *values);
+    for (size_t k = 0; values && known && k < points; k++)
+        values[k] = phi[k] + mf_sum_shifted(known, r[k]);
     return values;
 }
 
@@ -37,7 +48,7 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
     const size_t first = mf_potential_grid_block(&unknowns->potential, pair);
     const double *r = unknowns->potential.r + first;
     const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
-    OWNED double *force = NULL, *truth = NULL;
+    OWNED double *force = NULL, *truth = NULL, *total = NULL;
     size_t count = 0;
     char path[OUTPUT_PATH_SIZE];
     TRY_ARRAY(force, points);
@@ -46,9 +57,10 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
         force[k] = -force[k];
     }
     truth = truth_at(fit, UNKNOWN_POTENTIAL, pair, r, points);
-    TRY(truth ? STATUS_OK : STATUS_NO_MEMORY);
-    static const char *const beside[6] = {"%.10g", "%.10g"};
-    struct data_column columns[6] = {
+    total = total_at(fit, pair, r, phi, points);
+    TRY(truth && total ? STATUS_OK : STATUS_NO_MEMORY);
+    static const char *const beside[7] = {"%.10g", "%.10g"};
+    struct data_column columns[7] = {
         {"r[lambda]", r, "%.17g"},
         {"phi[k_B.T_0]", phi, "%.17g"},
         {"force[k_B.T_0/lambda]", force, NULL},
@@ -59,6 +71,8 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
                                                 result->without_ramp + first, "%.3g"};
     if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
+    if (inverse_law_curve(&fit->problem.known, (int)pair))
+        columns[count++] = (struct data_column){"total[k_B.T_0]", total, "%.17g"};
     curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
     TRY(mf_data_table_write_beside(path, units, columns, beside, count, points));
     if (mf_units_known(units)) {
@@ -73,7 +87,8 @@ static enum status write_potentials(const struct fit_file *fit, const struct unk
                                     const struct fit_result *result,
                                     const struct run_folder *folder) {
     CLEARED_BY(mf_table_clear) struct table table = {0};
-    TRY(mf_potential_grid_table(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL], &table));
+    TRY(mf_potential_grid_table_sought(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL],
+                                       &table));
     for (size_t pair = 0; pair < unknowns->potential.pairs; pair++)
         TRY(write_potential(fit, unknowns, result, &table, pair, folder));
     return STATUS_OK;

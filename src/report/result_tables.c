@@ -170,10 +170,22 @@ static enum status read_vacf(struct result_table *table, const char *folder, boo
                                   : STATUS_OK;
 }
 
+/// With what was known beside it, which another fit may have looked for.
 static enum status read_potential(struct result_table *table, const char *folder) {
-    struct wanted_column wanted[] = {{NULL, 1}, {NULL, 2}, {"phi_error", 0}, {"truth", 0}};
-    return is_there(folder, "potential.tsv") ? read_table(table, folder, "potential.tsv", wanted, 4)
-                                             : STATUS_OK;
+    enum { PHI = 1, TRUTH = 3, SOUGHT = 4, COLUMNS = 5 };
+    struct wanted_column wanted[COLUMNS] = {
+        {NULL, 1}, {"total", 2}, {"phi_error", 0}, {"truth", 0}, {NULL, 2}};
+    if (!is_there(folder, "potential.tsv"))
+        return STATUS_OK;
+    TRY(read_table(table, folder, "potential.tsv", wanted, COLUMNS));
+    table->columns = COLUMNS - 1;
+    for (size_t k = 0; k < table->rows; k++) {
+        const double *from = table->values + k * COLUMNS;
+        double *to = table->values + k * table->columns;
+        const double row[] = {from[0], from[PHI], from[2], from[TRUTH] + from[PHI] - from[SOUGHT]};
+        memcpy(to, row, sizeof row);
+    }
+    return STATUS_OK;
 }
 
 /// A friction weight without a column of errors was not fitted.

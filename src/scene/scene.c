@@ -264,6 +264,13 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
         TRY(mf_scene_law_read(&scene->potential, object, "conservative", mf_curve_potentials,
                               &scene->setup.composition, &scene->units));
         TRY(mf_scene_law_tabulate(&scene->potential, mf_table_init_potential));
+        mf_json_refuse(object, "known",
+                       "it acts beside a potential that a fit looks for; here \"conservative\" "
+                       "is all there is, and {\"law\": \"sum\"} adds laws");
+    } else {
+        TRY(mf_scene_law_read(&scene->known, object, "known", mf_curve_potentials,
+                              &scene->setup.composition, &scene->units));
+        TRY(mf_scene_law_tabulate(&scene->known, mf_table_init_potential));
     }
     if (!(unknown & SCENE_FITS_OMEGA)) {
         TRY(mf_scene_law_read(&scene->omega, object, "dissipative", mf_curve_omegas,
@@ -300,6 +307,7 @@ static void clear_interactions(struct scene_interactions *interactions) {
 
 void mf_scene_clear(struct scene *scene) {
     mf_scene_law_clear(&scene->potential);
+    mf_scene_law_clear(&scene->known);
     mf_scene_law_clear(&scene->omega);
     mf_scene_memory_clear(&scene->memory);
     mf_scene_many_body_clear(&scene->many_body);
@@ -371,6 +379,8 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
     mf_scene_molecules_write(&scene->molecules, &setup->composition, writer);
     if (scene->potential.curves || finds_friction_alone(scene->unknown))
         mf_scene_law_write(&scene->potential, &setup->composition, writer, "conservative");
+    if (scene->known.curves)
+        mf_scene_law_write(&scene->known, &setup->composition, writer, "known");
     if (scene->omega.curves)
         mf_scene_law_write(&scene->omega, &setup->composition, writer, "dissipative");
     mf_scene_memory_write(&scene->memory, &setup->composition, writer);
@@ -389,6 +399,7 @@ void mf_scene_write(const struct scene *scene, struct json_writer *writer) {
 
 void mf_scene_digest(const struct scene *scene, uint64_t *digest) {
     mf_scene_law_digest(&scene->potential, digest);
+    mf_scene_law_digest(&scene->known, digest);
     mf_scene_law_digest(&scene->omega, digest);
     mf_scene_memory_digest(&scene->memory, digest);
     mf_scene_many_body_digest(&scene->many_body, digest);

@@ -35,6 +35,7 @@ struct scene {
     struct scene_given given;
     struct simulation_setup setup;
     struct scene_law potential, omega;
+    struct scene_law known; ///< what acts beside a potential that is looked for
     struct scene_memory memory;
     struct scene_many_body many_body;
     struct scene_interactions interactions;

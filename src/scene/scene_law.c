@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "curves/sampled.h"
+#include "curves/sum.h"
 #include "curves/weight.h"
 #include "io/data_table.h"
 #include "io/votca.h"
@@ -161,7 +162,34 @@ static enum status load_points(struct curve *curve, const char *unit, struct jso
 static bool is_usable(const struct curve *curve) {
     if (curve_is_sampled(curve->family))
         return ((const struct sampled_parameters *)curve->parameters)->spline != NULL;
+    if (curve->family == &mf_sum_family)
+        return ((const struct sum_parameters *)curve->parameters)->parts > 0;
     return mf_curve_check(curve) == STATUS_OK;
+}
+
+/// "of": {"core": {"law": …}, …}, the laws of a sum.
+static enum status read_parts(struct sum_parameters *sum, struct json_object *object,
+                              const struct curve_family *const *list, const struct units *units) {
+    const size_t faults = mf_json_fault_count(object->document);
+    struct json_object of = mf_json_child(object, "of", true);
+    const char *name;
+    for (size_t n = 0; of.item && (name = mf_json_key(&of, n)); n++) {
+        struct curve part = {0};
+        if (sum->parts == SUM_MAX_PARTS || strlen(name) >= SUM_NAME_SIZE) {
+            mf_json_fault(&of, name, "expected at most %d laws, with names of at most %d bytes",
+                          SUM_MAX_PARTS, SUM_NAME_SIZE - 1);
+            break;
+        }
+        TRY(mf_scene_read_curve(&part, &of, name, list, units));
+        strcpy(sum->name[sum->parts], name);
+        if (part.family)
+            sum->part[sum->parts++] = part;
+    }
+    if (of.item)
+        mf_json_finish(&of);
+    if (of.item && sum->parts == 0 && mf_json_fault_count(object->document) == faults)
+        mf_json_fault(object, "of", "is empty: expected laws, as {\"core\": {\"law\": …}, …}");
+    return STATUS_OK;
 }
 
 enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent, const char *key,
@@ -184,6 +212,8 @@ enum status mf_scene_read_curve(struct curve *curve, struct json_object *parent,
         mf_json_fields_need_scale(&object, family->fields);
         if (curve_is_sampled(family) && mf_json_fault_count(object.document) == faults)
             TRY(load_points(curve, unit, &object, units));
+        if (family == &mf_sum_family)
+            TRY(read_parts(curve->parameters, &object, list, units));
         mf_curve_scale(curve, mf_units_factor(units, "lambda"), mf_units_factor(units, unit));
         if (mf_json_fault_count(object.document) == faults && mf_curve_check(curve) != STATUS_OK)
             mf_json_fault(&object, NULL, "%s", mf_status_marked());
@@ -204,6 +234,13 @@ void mf_scene_write_curve(const struct curve *curve, struct json_writer *writer,
     mf_json_write_text(writer, "law", curve->family ? curve->family->name : "none");
     if (curve->family)
         mf_json_write_fields(writer, curve->family->fields, curve->parameters);
+    if (curve->family == &mf_sum_family) {
+        const struct sum_parameters *sum = curve->parameters;
+        mf_json_begin(writer, "of");
+        for (int k = 0; k < sum->parts; k++)
+            mf_scene_write_curve(&sum->part[k], writer, sum->name[k]);
+        mf_json_end(writer);
+    }
     mf_json_end(writer);
 }
 

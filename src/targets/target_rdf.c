@@ -48,8 +48,8 @@ const struct field mf_target_rdf_fields[] = {
      .help = "prior standard deviation of an estimated normalisation from 1"},
     {"errors_of", FIELD_CHOICE, MEMBER(errors_of), .choices = mf_targets_errors,
      .initial = TARGET_ERRORS_UNKNOWN, .unit = "",
-     .help = "samples: of a simulation, so that neighbouring bins scatter together; bins: of each "
-             "bin by itself, as in a figure; unknown: the larger of both"},
+     .help = "samples: of a simulation (neighbouring bins scatter together); bins: independent, "
+             "as of a figure; unknown: the larger"},
     FIELD_END,
 };
 

@@ -3,6 +3,7 @@
 
 #include "dynamics/hybrid_step.h"
 #include "dynamics/respa.h"
+#include "defaults/fit_engine.h"
 #include "defaults/fit_scales.h"
 #include "observe/stages.h"
 #include "system/attributes.h"
@@ -87,8 +88,30 @@ static enum status warn_of_range(const struct fit_file *fit,
     return STATUS_OK;
 }
 
+/// What acts beside the potential that is looked for, and who has it.
+static void tell_known(const struct fit_file *fit, const struct target_sanity_listener *listener) {
+    const struct composition *composition = &fit->scene.setup.composition;
+    char laws[512] = "";
+    size_t used = 0;
+    if (fit->scene.known.curves == 0)
+        return;
+    for (int pair = 0; pair < mf_composition_pairs(composition) && used < sizeof laws; pair++) {
+        const struct curve *law = mf_scene_law_curve(&fit->scene.known, pair);
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, pair, name);
+        used += (size_t)snprintf(laws + used, sizeof laws - used, "%s%s%s%s", pair > 0 ? ", " : "",
+                                 name, name[0] ? " " : "", law ? law->family->name : "none");
+    }
+    mf_target_sanity_warn(
+        listener, "known beside the potential that is looked for: %s; %s", laws,
+        mf_fit_engine_knows_more(fit) ? "the engine has it itself, and its tables are of the rest"
+        : fit->engine.kind == ENGINE_NONE ? "simulations have both"
+                                          : "the tables of the engine are of both");
+}
+
 enum status mf_fit_print_state(const struct fit_file *fit,
                                const struct target_sanity_listener *listener) {
+    tell_known(fit, listener);
     warn_of_step(fit, listener);
     TRY(warn_of_range(fit, listener));
     return mf_target_sanity_report(&fit->files, &fit->scene, listener);

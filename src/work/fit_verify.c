@@ -101,13 +101,15 @@ static enum status verify_state(const struct fit_file *state, int round, double 
     struct unknowns unknowns = {0};
     struct unknowns_laws laws = {0};
     const struct verify_parameters parameters = plan_of(state, round);
+    struct inverse_problem problem = state->problem;
     double value[INVERSE_MAX_NUMBERS];
     enum status status = STATUS_OK;
+    problem.engine = verifies_elsewhere(state) ? problem.engine : NULL;
+    problem.knows_elsewhere = problem.knows_elsewhere && problem.engine;
     for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
         value[n] = number[n].value;
-    CHECK(mf_unknowns_init(&unknowns, &state->problem));
+    CHECK(mf_unknowns_init(&unknowns, &problem));
     CHECK(mf_unknowns_laws_make(&unknowns, (const double *const *)curve, value, &laws));
-    laws.problem.engine = verifies_elsewhere(state) ? state->problem.engine : NULL;
     status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                        &parameters, listener, verification);
     CHECK(advise(state, &verification->step, status));

@@ -138,6 +138,46 @@ static void test_a_fit_whose_engine_died_goes_on_with_the_same_bits(void **state
     results_assert_same("whole", "out", same);
 }
 
+/// A fit of what is left beside a known part of the truth, which is linear in a.
+static void write_known(void *state) {
+    write_coarse(state, "known.json");
+    small_inputs_change(state, "known.json", "\"box\"",
+                        "\"known\": {\"law\": \"soft-repulsion\", \"a\": 15}, \"box\"");
+    small_inputs_change(state, "known.json", "\"a\": 25", "\"a\": 10");
+}
+
+/// A command that adds the known part by itself is given the rest, and the start is that of it.
+static void test_an_engine_that_has_a_known_part_is_given_the_rest(void **state) {
+    write_known(*state);
+    small_inputs_change(*state, "engine.py", "{'law': 'table', 'file': 'potential.tsv'}",
+                        "{'law': 'sum', 'of': {'rest': {'law': 'table', 'file': 'potential.tsv'},"
+                        " 'known': {'law': 'soft-repulsion', 'a': 15}}}");
+    small_inputs_change(*state, "engine.py", "           'pair_energy': energy}", "           }");
+    RUN_PROGRAM(&result, "fit", "known.json", "-o", "out", "--engine", COMMAND);
+    assert_in_range(result.code, 0, 1);
+    assert_non_null(strstr(result.err, "the engine has it itself, and its tables are of the rest"));
+    assert_true(results_number("out/summary.json", "start.error") < 0.2);
+    assert_true(results_number("out/summary.json", "rdf_rmse") < 0.05);
+    // By mesofit itself, which adds the known part.
+    small_inputs_change(*state, "known.json", "\"replicas\": 2",
+                        "\"by\": \"mesofit\", \"replicas\": 2");
+    RUN_PROGRAM(&result, "fit", "known.json", "-o", "own", "--engine", COMMAND);
+    assert_true(results_number("own/summary.json", "rdf_rmse") < 0.05);
+}
+
+/// An input that mesofit writes has both parts in its tables, as energies of the frames tell.
+static void test_a_written_input_has_the_known_part(void **state) {
+    lammps_runs_skip_without(NULL);
+    write_known(*state);
+    small_inputs_change(*state, "known.json", ENGINE,
+                        "\"engine\": {\"name\": \"lammps\", \"time_step\": 0.005, \"steps\": "
+                        "20}");
+    RUN_PROGRAM(&result, "fit", "known.json", "-o", "out", "--engine", "lmp");
+    assert_in_range(result.code, 0, 1);
+    assert_non_null(strstr(result.err, "the tables of the engine are of both"));
+    assert_true(results_number("out/summary.json", "rdf_rmse") < 0.05);
+}
+
 /// Whether the fit waits for samples; then they are made, as somebody else would.
 static bool sample_what_is_listed(void) {
     struct stat found;
@@ -318,6 +358,10 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_a_known_potential_is_found, enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_a_fit_whose_engine_died_goes_on_with_the_same_bits,
                                         enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_an_engine_that_has_a_known_part_is_given_the_rest,
+                                        enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_a_written_input_has_the_known_part, enter,
+                                        small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_samples_made_later_give_the_same_bits, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_broken_samples_are_waited_for_again, enter,

@@ -344,7 +344,7 @@ static void test_lengths_of_laws_have_no_default_that_follows_the_density(void *
     run_program_assert_code(&result, 2);
     assert_int_equal(run_program_lines(result.err), 1);
     assert_contains(result.err, "scene.json: conservative.cutoff: missing: expected a number in nm "
-                                "(distance beyond which it is 0); the default, 2.5 lambda, would "
+                                "(it is 0 beyond); the default, 2.5 lambda, would "
                                 "change with the density");
     small_inputs_write(*state, "scene.json", scene, "0.34", "0.34, \"cutoff\": 0.85");
     simulate("scene.json", "out");

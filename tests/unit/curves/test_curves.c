@@ -5,6 +5,7 @@
 #include "curves/curve.h"
 #include "curves/formula.h"
 #include "curves/sampled.h"
+#include "curves/sum.h"
 #include "curves/table.h"
 #include "shared/is_close.h"
 #include "shared/testing.h"
@@ -26,6 +27,7 @@ static void test_curve_find_knows_every_family_when_named(void **state) {
                      &mf_formula_soft_repulsion);
     assert_ptr_equal(mf_curve_find(mf_curve_potentials, "gaussian"), &mf_formula_gaussian);
     assert_ptr_equal(mf_curve_find(mf_curve_potentials, "table"), &mf_sampled_family);
+    assert_ptr_equal(mf_curve_find(mf_curve_potentials, "sum"), &mf_sum_family);
     assert_ptr_equal(mf_curve_find(mf_curve_omegas, "power"), &mf_formula_power_omega);
     assert_null(mf_curve_find(mf_curve_omegas, "lennard-jones"));
     assert_null(mf_curve_find(mf_curve_potentials, ""));
