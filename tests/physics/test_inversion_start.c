@@ -11,6 +11,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { PARTICLES = 700, BINS = 80 };
 
@@ -30,7 +31,7 @@ static void make_fluid(struct fluid *fluid) {
 }
 
 static void measure(const struct fluid *fluid, double *g, double *error) {
-    enum { SAMPLES = 1500 };
+    enum { SAMPLES = 4000 };
     const struct simulation_setup *setup = &fluid->setup;
     struct metropolis metropolis;
     struct rdf rdf;
@@ -39,7 +40,7 @@ static void measure(const struct fluid *fluid, double *g, double *error) {
     assert_ok(mf_metropolis_equilibrate(&metropolis, 500));
     assert_ok(mf_rdf_init_mixture(&rdf, &bins, &setup->box, &setup->composition, 0, SAMPLES));
     for (int sample = 0; sample < SAMPLES; sample++) {
-        assert_ok(mf_metropolis_run(&metropolis, 3));
+        assert_ok(mf_metropolis_run(&metropolis, 2));
         assert_ok(mf_rdf_sample(&rdf, &metropolis.particles, &metropolis.neighbours));
     }
     assert_ok(mf_rdf_result(&rdf, 1, g, error));
@@ -47,15 +48,13 @@ static void measure(const struct fluid *fluid, double *g, double *error) {
     mf_metropolis_clear(&metropolis);
 }
 
-/// Invert; returns the first known bin.
-static size_t invert(const struct fluid *fluid, double *g, double *target_error,
-                     const struct curve *start, double *phi, double *error) {
-    struct inverse_step step;
+static struct inverse_problem problem_of(const struct fluid *fluid, double *g, double *error,
+                                         const struct curve *start) {
     struct inverse_problem problem = {
         .targets = {.bins = bins,
                     .target[TARGET_RDF] = {.count = BINS,
                                            .value = g,
-                                           .error = target_error,
+                                           .error = error,
                                            .errors_of = TARGET_ERRORS_OF_SAMPLES}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {start}},
         .scene = fluid->setup,
@@ -63,8 +62,38 @@ static size_t invert(const struct fluid *fluid, double *g, double *target_error,
         .core_stiffness = 2000,
         .seed = 5,
         .threads = 2};
-    size_t first = 0;
     problem.scene.potential = NULL;
+    return problem;
+}
+
+/// −k_B T ln g, made smooth, stays within the errors of each bin: a repulsion is not bent where few
+/// pairs are.
+static void assert_start_follows_core(const struct fluid *fluid, double *g, double *error) {
+    const struct inverse_problem problem = problem_of(fluid, g, error, NULL);
+    struct inversion *inversion = calloc(1, sizeof *inversion);
+    struct inversion_parameters settings;
+    assert_non_null(inversion);
+    mf_fields_set_defaults(mf_inversion_fields, &settings);
+    settings.start = INVERSION_FROM_MEAN_FORCE;
+    assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
+    const struct potential_grid *grid = &inversion->state->grid;
+    for (size_t a = 0; a < 6; a++) {
+        const size_t bin = grid->known_bin[a];
+        const double off = inversion->course.phi[grid->known_point[a]] + log(g[bin]);
+        print_message("r = %.2f: off by %.3f, error %.3f\n", mf_rdf_bins_centre(&bins, bin), off,
+                      error[bin] / g[bin]);
+        assert_true(fabs(off) < 2.5 * error[bin] / g[bin]);
+    }
+    mf_inversion_destroy(inversion);
+    free(inversion);
+}
+
+/// Invert; returns the first known bin.
+static size_t invert(const struct fluid *fluid, double *g, double *target_error,
+                     const struct curve *start, double *phi, double *error) {
+    struct inverse_step step;
+    struct inverse_problem problem = problem_of(fluid, g, target_error, start);
+    size_t first = 0;
     inversions_run(&mf_imc, &problem, 0.004, phi, error, &step);
     assert_true(step.converged);
     while (!(error[first] > 0))
@@ -82,6 +111,7 @@ static void test_inversion_ends_at_one_potential_wherever_it_begins(void **state
         (struct formula_soft_repulsion_parameters){.a = 100, .cutoff = 1};
     make_fluid(&fluid);
     measure(&fluid, g, target_error);
+    assert_start_follows_core(&fluid, g, target_error);
     const size_t first = invert(&fluid, g, target_error, NULL, phi[0], error[0]);
     assert_true(invert(&fluid, g, target_error, &soft, phi[1], error[1]) == first);
     for (size_t k = first; k < BINS; k++) {
