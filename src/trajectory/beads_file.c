@@ -89,8 +89,6 @@ enum status mf_beads_file_restart(struct beads_file *file) {
 }
 
 enum status mf_beads_file_commit(struct beads_file *file) {
-    if (file->format->finish)
-        file->format->finish(file);
     return mf_output_commit(&file->output);
 }
 

@@ -278,5 +278,4 @@ const struct trajectory_format mf_format_gsd = {
     .describe = describe,
     .decode = decode,
     .print = mf_gsd_print_beads,
-    .finish = mf_gsd_finish_beads,
 };

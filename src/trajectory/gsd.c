@@ -300,7 +300,7 @@ static void put_head(uint64_t index, uint64_t entries, uint64_t names, FILE *str
     binary_put(stream, 0x65DF65DF65DF65DF, 8, false);
     binary_put(stream, index, 8, false);
     binary_put(stream, entries, 8, false);
-    binary_put(stream, index + entries * ENTRY, 8, false);
+    binary_put(stream, HEAD, 8, false);  // where names are
     binary_put(stream, names, 8, false); // of up to 64 bytes each
     binary_put(stream, 1 << 16 | 4, 4, false);
     binary_put(stream, 2 << 16, 4, false);
@@ -309,50 +309,131 @@ static void put_head(uint64_t index, uint64_t entries, uint64_t names, FILE *str
     put_text("", HEAD - 2 * GSD_NAME - 48, stream);
 }
 
-/// An entry of the index, which is sorted by frames and ids. @return bytes of its numbers
-static uint64_t put_entry(const struct gsd_content *content, enum gsd_chunk chunk, size_t frame,
-                          uint64_t at, uint64_t id, FILE *stream) {
-    const uint64_t rows = content->rows(content->context, chunk, frame);
-    binary_put(stream, frame, 8, false);
-    binary_put(stream, rows, 8, false);
-    binary_put(stream, at, 8, false);
-    binary_put(stream, chunks[chunk].columns, 4, false);
-    binary_put(stream, id, 2, false);
-    binary_put(stream, chunks[chunk].type, 1, false);
-    binary_put(stream, 0, 1, false);
-    return rows * chunks[chunk].columns * stored_bytes[chunks[chunk].type];
+/// Where everything is that is written: the head, the names, an index with room for 16 frames,
+/// these, a copy of the index with room for 32, the next 16 frames, one with room for 64, and so
+/// on. The last index counts. So a frame costs the same however many there are, and the bytes of a
+/// file do not depend on where a run was interrupted.
+struct layout {
+    uint64_t id[CHUNKS], names;
+    uint64_t entries[2], bytes[2]; ///< of the first frame, and of each other one
+};
+
+enum { FIRST_ROOM = 16 };
+
+static uint64_t chunk_bytes(const struct gsd_content *content, int chunk, size_t frame) {
+    return content->rows(content->context, (enum gsd_chunk)chunk, frame) * chunks[chunk].columns *
+           stored_bytes[chunks[chunk].type];
 }
 
-void mf_gsd_put_begin(FILE *stream) {
-    put_text("", HEAD, stream);
-}
-
-void mf_gsd_put_frame(const struct gsd_content *content, size_t frame, FILE *stream) {
+static struct layout find_layout(const struct gsd_content *content) {
+    struct layout layout = {0};
     for (int chunk = 0; chunk < CHUNKS; chunk++)
-        if (content->rows(content->context, (enum gsd_chunk)chunk, frame) > 0)
-            content->put(content->context, (enum gsd_chunk)chunk, stream);
+        for (size_t frame = 0; frame < 2; frame++) {
+            const uint64_t bytes = chunk_bytes(content, chunk, frame);
+            layout.bytes[frame] += bytes;
+            layout.entries[frame] += bytes > 0;
+            if (frame == 0)
+                layout.id[chunk] = layout.names;
+            if (frame == 0 && bytes > 0)
+                layout.names++;
+        }
+    return layout;
 }
 
-void mf_gsd_put_end(const struct gsd_content *content, size_t frames, FILE *stream) {
-    uint64_t at = HEAD, entries = 0, id[CHUNKS], names = 0;
-    size_t length = 0;
-    const int64_t index = ftello(stream);
+/// Sum over so many frames.
+static uint64_t sum_of(const uint64_t of_frame[2], size_t frames) {
+    return frames == 0 ? 0 : of_frame[0] + (frames - 1) * of_frame[1];
+}
+
+/// Frames that the index has room for which a frame is written in.
+static size_t room_of(size_t frame) {
+    size_t room = FIRST_ROOM;
+    while (room <= frame)
+        room *= 2;
+    return room;
+}
+
+/// Where a frame would begin if those with this much room were the last index before it.
+static uint64_t find_place(const struct layout *layout, size_t frame, size_t room) {
+    uint64_t place = HEAD + layout->names * GSD_NAME + sum_of(layout->bytes, frame);
+    for (size_t before = FIRST_ROOM; before <= room; before *= 2)
+        place += ENTRY * sum_of(layout->entries, before);
+    return place;
+}
+
+static uint64_t find_index(const struct layout *layout, size_t room) {
+    return find_place(layout, room > FIRST_ROOM ? room / 2 : 0, room / 2);
+}
+
+static void seek(uint64_t place, FILE *stream) {
+    (void)fseeko(stream, (off_t)place, SEEK_SET); // a stream that cannot has an error
+}
+
+/// Entries of a frame, sorted by ids.
+static void put_entries(const struct gsd_content *content, const struct layout *layout,
+                        size_t frame, FILE *stream) {
+    uint64_t at = find_place(layout, frame, room_of(frame));
     for (int chunk = 0; chunk < CHUNKS; chunk++) {
-        id[chunk] = names;
-        names += content->rows(content->context, (enum gsd_chunk)chunk, 0) > 0;
+        const uint64_t rows = content->rows(content->context, (enum gsd_chunk)chunk, frame);
+        if (rows == 0)
+            continue;
+        binary_put(stream, frame, 8, false);
+        binary_put(stream, rows, 8, false);
+        binary_put(stream, at, 8, false);
+        binary_put(stream, chunks[chunk].columns, 4, false);
+        binary_put(stream, layout->id[chunk], 2, false);
+        binary_put(stream, chunks[chunk].type, 1, false);
+        binary_put(stream, 0, 1, false);
+        at += chunk_bytes(content, chunk, frame);
     }
-    for (size_t frame = 0; frame < frames; frame++)
-        for (int chunk = 0; chunk < CHUNKS; chunk++)
-            if (content->rows(content->context, (enum gsd_chunk)chunk, frame) > 0) {
-                at += put_entry(content, (enum gsd_chunk)chunk, frame, at, id[chunk], stream);
-                entries++;
-            }
+}
+
+static void put_names(const struct gsd_content *content, const struct layout *layout,
+                      FILE *stream) {
+    size_t length = 0;
     for (int chunk = 0; chunk < CHUNKS; chunk++)
         if (content->rows(content->context, (enum gsd_chunk)chunk, 0) > 0) {
             put_text(chunks[chunk].name, strlen(chunks[chunk].name) + 1, stream);
             length += strlen(chunks[chunk].name) + 1;
         }
-    put_text("", names * GSD_NAME - length, stream);
-    if (fseeko(stream, 0, SEEK_SET) == 0)
-        put_head((uint64_t)index, entries, names, stream);
+    put_text("", layout->names * GSD_NAME - length, stream);
+}
+
+static void put_head_of(const struct layout *layout, size_t room, FILE *stream) {
+    seek(0, stream);
+    put_head(find_index(layout, room), sum_of(layout->entries, room), layout->names, stream);
+}
+
+void mf_gsd_put_frame(const struct gsd_content *content, size_t frame, FILE *stream) {
+    const struct layout layout = find_layout(content);
+    const size_t room = room_of(frame);
+    const bool is_new = frame == 0 || room_of(frame - 1) < room;
+    if (frame == 0) {
+        put_text("", HEAD, stream);
+        put_names(content, &layout, stream);
+    }
+    for (size_t before = 0; is_new && before < frame; before++)
+        put_entries(content, &layout, before, stream);
+    if (is_new)
+        put_text("", ENTRY * (sum_of(layout.entries, room) - sum_of(layout.entries, frame)),
+                 stream);
+    for (int chunk = 0; chunk < CHUNKS; chunk++)
+        if (content->rows(content->context, (enum gsd_chunk)chunk, frame) > 0)
+            content->put(content->context, (enum gsd_chunk)chunk, stream);
+    seek(find_index(&layout, room) + ENTRY * sum_of(layout.entries, frame), stream);
+    put_entries(content, &layout, frame, stream);
+    if (is_new)
+        put_head_of(&layout, room, stream);
+    seek(find_place(&layout, frame + 1, room), stream);
+}
+
+void mf_gsd_cut(const struct gsd_content *content, size_t frames, FILE *stream) {
+    const struct layout layout = find_layout(content);
+    if (frames == 0)
+        return;
+    const size_t room = room_of(frames - 1);
+    const uint64_t used = sum_of(layout.entries, frames);
+    seek(find_index(&layout, room) + ENTRY * used, stream);
+    put_text("", ENTRY * (sum_of(layout.entries, room) - used), stream);
+    put_head_of(&layout, room, stream);
 }

@@ -84,14 +84,14 @@ void mf_gsd_put(enum gsd_chunk chunk, int64_t number, FILE *stream);
 void mf_gsd_put_real(double number, FILE *stream);
 void mf_gsd_put_name(const char *name, FILE *stream);
 
-/// One after the other: the place of the head; the chunks of each frame; the index of them all, the
-/// names and the head. The stream can seek.
-void mf_gsd_put_begin(FILE *stream);
+/// One frame after the other, from the place where the one before has ended; what there is is a
+/// whole file after each of them. The stream can seek.
 void mf_gsd_put_frame(const struct gsd_content *content, size_t frame, FILE *stream);
-void mf_gsd_put_end(const struct gsd_content *content, size_t frames, FILE *stream);
+
+/// Forget frames from this number on, of a file that was cut where they began.
+void mf_gsd_cut(const struct gsd_content *content, size_t frames, FILE *stream);
 
 /// As struct trajectory_format has them. Fails: BAD_INPUT without a box, for one that the format
 /// has not, and without velocities if the first frame had them.
 enum status mf_gsd_print_beads(struct beads_file *file,
                                const struct trajectory_frame *beads) MUST_USE;
-void mf_gsd_finish_beads(struct beads_file *file);

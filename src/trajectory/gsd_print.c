@@ -134,22 +134,19 @@ static void put_snapshot(const void *context, enum gsd_chunk chunk, FILE *stream
 
 static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
     const struct gsd_content content = {snapshot_rows, put_snapshot, snapshot};
-    if (snapshot->number == 0)
-        mf_gsd_put_begin(stream);
     mf_gsd_put_frame(&content, snapshot->number, stream);
 }
 
-static void finish_snapshots(const struct snapshot *snapshot, size_t frames, FILE *stream) {
+static void cut_snapshots(const struct snapshot *snapshot, size_t frames, FILE *stream) {
     const struct gsd_content content = {snapshot_rows, put_snapshot, snapshot};
-    if (frames > 0)
-        mf_gsd_put_end(&content, frames, stream);
+    mf_gsd_cut(&content, frames, stream);
 }
 
 const struct snapshot_format mf_gsd_snapshot = {.name = "gsd",
                                                 .suffix = "gsd",
                                                 .appended = true,
                                                 .print = print_snapshot,
-                                                .finish = finish_snapshots};
+                                                .cut = cut_snapshots};
 
 // Beads -------------------------------------------------------------------------------------------
 
@@ -259,15 +256,9 @@ enum status mf_gsd_print_beads(struct beads_file *file, const struct trajectory_
     if (file->frames == 0) {
         file->has_velocities = beads->has_velocities;
         file->has_images = beads->unwrapped;
-        mf_gsd_put_begin(file->output.stream);
     }
     TRY(check(file, beads));
     file->beads = beads;
     mf_gsd_put_frame(&content, file->frames, file->output.stream);
     return STATUS_OK;
-}
-
-void mf_gsd_finish_beads(struct beads_file *file) {
-    const struct gsd_content content = {bead_rows, put_beads, file};
-    mf_gsd_put_end(&content, file->frames, file->output.stream);
 }

@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <math.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 const struct snapshot_format *const mf_snapshot_formats[] = {&mf_snapshot_vtp,
@@ -272,14 +273,17 @@ static enum status write_whole(const struct snapshot *snapshot,
     return mf_output_commit(&output);
 }
 
-/// Print after the first `size` bytes of a file; with `frames` of them before, what ends these.
+/// Print after the first `size` bytes of a file, or leave it at these.
 static int print_at(const struct snapshot *snapshot, const struct snapshot_format *format, int file,
                     bool frame, int64_t size, int64_t *end) {
-    if (ftruncate(file, size) != 0)
+    struct stat found;
+    if (fstat(file, &found) != 0 || ftruncate(file, size) != 0)
         return errno;
     FILE *stream = fdopen(dup(file), "wb");
     if (stream == NULL)
         return errno;
+    if (format->cut && found.st_size > size)
+        format->cut(snapshot, snapshot->number, stream);
     if (fseeko(stream, size, SEEK_SET) != 0) {
         const int error = errno;
         fclose(stream);
@@ -288,8 +292,6 @@ static int print_at(const struct snapshot *snapshot, const struct snapshot_forma
     if (frame)
         format->print(snapshot, stream);
     *end = ftello(stream);
-    if (format->finish)
-        format->finish(snapshot, snapshot->number + frame, stream);
     errno = 0;
     const int error = fflush(stream) != 0 || ferror(stream) ? (errno ? errno : EIO) : 0;
     fclose(stream);

@@ -97,8 +97,9 @@ struct snapshot_format {
     bool appended;      ///< all snapshots go into one file
     bool angstrom;      ///< is in Å, fs and kcal/mol where the scene has units
     void (*print)(const struct snapshot *snapshot, FILE *stream);
-    /// What stands behind so many frames of its one file, and before them; NULL: nothing.
-    void (*finish)(const struct snapshot *snapshot, size_t frames, FILE *stream);
+    /// Forget frames from this number on, of a file that was cut where they began; NULL: it is
+    /// right as it is.
+    void (*cut)(const struct snapshot *snapshot, size_t frames, FILE *stream);
 };
 
 extern const struct snapshot_format mf_snapshot_vtp, mf_snapshot_json, mf_snapshot_xyz,

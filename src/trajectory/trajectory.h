@@ -67,7 +67,6 @@ struct trajectory_format {
     /// Print a frame of beads; NULL: the format is read only. Fails: BAD_INPUT for what it cannot
     /// hold.
     enum status (*print)(struct beads_file *file, const struct trajectory_frame *beads);
-    void (*finish)(struct beads_file *file); ///< after the last frame; NULL: nothing follows
 };
 
 /// All formats; what is recognised first comes first.

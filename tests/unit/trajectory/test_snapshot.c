@@ -9,13 +9,14 @@
 #include "trajectory/trajectory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { COUNT = 3 };
 static const struct composition mixture = {.types = 2, .count = {2, 1}, .name = {"A", "Big"}};
 
 /// Particle k of the arrays has the id (k + 1) mod 3; the second is outside of the box.
-static void make(struct particles *particles) {
-    const struct box box = {2, {4, 8, 1}};
+static void make_in(struct particles *particles, int dimensions) {
+    const struct box box = {dimensions, {4, 8, 1}};
     int number;
     assert_ok(mf_particles_init(particles, &box, COUNT));
     assert_ok(mf_particles_add_attribute(particles,
@@ -25,7 +26,7 @@ static void make(struct particles *particles) {
                                          &number));
     for (int k = 0; k < COUNT; k++) {
         particles->id[k] = (uint32_t)(k + 1) % COUNT;
-        for (int d = 0; d < 2; d++) {
+        for (int d = 0; d < dimensions; d++) {
             particles->position[d][k] = 1.1 + k + 10 * (k == 1);
             particles->velocity[d][k] = 100 + 10 * d + k;
             particles->force[d][k] = -1.0 / (3 + k + d);
@@ -33,6 +34,10 @@ static void make(struct particles *particles) {
         ((double *)particles->attribute[number].value[0])[k] = 0.5 * k;
     }
     particles->image[0][1] = 7;
+}
+
+static void make(struct particles *particles) {
+    make_in(particles, 2);
 }
 
 static char *write_one(void **state, const struct snapshot_format *format, const char *name) {
@@ -219,6 +224,76 @@ static void test_extxyz_is_continued_behind_the_bytes_that_count(void **state) {
     mf_particles_clear(&particles);
 }
 
+/// How many frames a reader finds, whose steps are 10, 20, …
+static size_t count_gsd_frames(const char *path) {
+    static const struct trajectory_options options = {.units = "lj"};
+    struct trajectory gsd;
+    struct trajectory_frame frame = {0};
+    size_t frames = 0;
+    bool more = true;
+    assert_ok(mf_trajectory_open(&gsd, path, &options));
+    while (true) {
+        assert_ok(mf_trajectory_next(&gsd, &frame, &more));
+        if (!more)
+            break;
+        frames++;
+        assert_int_equal(frame.step, 10 * frames);
+        assert_close(frame.velocity[2][0], 101, 1e-3);
+    }
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&gsd);
+    return frames;
+}
+
+/// Frames up to a number, from one behind whose predecessors the file ends after so many bytes.
+static int64_t write_gsd(struct snapshot *snapshot, const char *folder, const char *path,
+                         size_t from, int64_t size, size_t to) {
+    for (size_t k = from; k < to; k++) {
+        snapshot->number = k;
+        snapshot->step = 10 * (k + 1);
+        assert_ok(mf_snapshot_write(snapshot, &mf_gsd_snapshot, folder, &size));
+        assert_int_equal(count_gsd_frames(path), k + 1);
+    }
+    return size;
+}
+
+/// The number at byte 8 of a file: where its index is.
+static uint64_t find_index(const char *bytes) {
+    uint64_t at;
+    memcpy(&at, bytes + 8, sizeof at);
+    return at;
+}
+
+/// A GSD file is whole after each frame, and has the same bytes after a run that was killed and
+/// continued. Its index is written anew where the number of frames has doubled, not with each.
+static void test_gsd_is_whole_after_each_frame_and_its_index_is_seldom_written(void **state) {
+    enum { FRAMES = 70, KEPT = 20 };
+    struct temporary_folder *folder = *state;
+    struct particles particles;
+    struct snapshot snapshot;
+    const char *const path = temporary_folder_file(folder, "trajectory.gsd");
+    make_in(&particles, 3);
+    assert_ok(mf_snapshot_take(&snapshot, &particles, &mixture, NULL, 0, 0.5));
+    const int64_t kept = write_gsd(&snapshot, folder->path, path, 0, 0, KEPT);
+    int64_t size = write_gsd(&snapshot, folder->path, path, KEPT, kept, KEPT + 1);
+    char *before = temporary_folder_read(path);
+    size = write_gsd(&snapshot, folder->path, path, KEPT + 1, size, KEPT + 2);
+    char *after = temporary_folder_read(path);
+    assert_int_equal(find_index(before), find_index(after));
+    free(before);
+    free(after);
+    size = write_gsd(&snapshot, folder->path, path, KEPT + 2, size, FRAMES);
+    char *whole = temporary_folder_read(path);
+    write_gsd(&snapshot, folder->path, path, KEPT, kept, KEPT + 1);
+    assert_int_equal(write_gsd(&snapshot, folder->path, path, KEPT, kept, FRAMES), size);
+    char *again = temporary_folder_read(path);
+    assert_memory_equal(whole, again, (size_t)size);
+    free(whole);
+    free(again);
+    mf_snapshot_clear(&snapshot);
+    mf_particles_clear(&particles);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_extxyz_has_a_line_for_each_particle_by_id,
@@ -229,6 +304,9 @@ int main(void) {
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_extxyz_is_continued_behind_the_bytes_that_count,
                                         temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(
+            test_gsd_is_whole_after_each_frame_and_its_index_is_seldom_written,
+            temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_lammps_dump_is_read_back, temporary_folder_create,
                                         temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_companions_follow_as_a_type_of_their_own,
