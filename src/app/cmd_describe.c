@@ -239,7 +239,37 @@ static const char *find_of_command(const struct topic *topics, size_t count, con
     return NULL;
 }
 
+static bool has_key(const struct topic *topic, const char *key) {
+    for (size_t t = 0; topic->tables[t]; t++)
+        for (const struct field *field = topic->tables[t]; field->name; field++)
+            if (strcmp(field->name, key) == 0)
+                return true;
+    return false;
+}
+
+/// What to describe instead of a key, "molecule" of "molecules", "measure", "motion", … of "every",
+/// into `text`; false if no object has that key.
+static bool find_key(const struct topic *topics, size_t count, const char *key, char *text,
+                     size_t size) {
+    enum { MOST = 4 };
+    size_t found = 0, length = 0;
+    for (size_t k = 0; k < count; k++) {
+        struct topic_object objects[DESCRIBE_MAX_OBJECTS];
+        const char *name = has_key(&topics[k], key) ? topics[k].name : NULL;
+        const size_t own = mf_describe_objects(topics[k].name, objects);
+        for (size_t o = 0; o < own; o++)
+            if (strcmp(objects[o].key, key) == 0)
+                name = objects[o].topic;
+        if (name == NULL || (found > 0 && strstr(text, name)) || found++ > MOST)
+            continue;
+        length += (size_t)snprintf(text + length, size - length, "%s%.24s", found > 1 ? ", " : "",
+                                   found > MOST ? "..." : name);
+    }
+    return found > 0;
+}
+
 static enum status run(const struct command_line *line) {
+    char homes[256];
     struct topic topics[DESCRIBE_MAX_TOPICS];
     const char *names[DESCRIBE_MAX_TOPICS];
     const size_t count = mf_describe_topics(topics);
@@ -255,6 +285,11 @@ static enum status run(const struct command_line *line) {
         return STATUS_OK;
     for (size_t k = 0; k < count; k++)
         names[k] = topics[k].name;
+    const char *const dot = strrchr(line->files[0], '.'); // as in "scene.box"
+    if (find_key(topics, count, dot ? dot + 1 : line->files[0], homes, sizeof homes))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "describe: \"%s\" is a key: see mesofit describe %s", line->files[0],
+                              homes);
     const char *nearest = find_of_command(topics, count, line->files[0]);
     if (nearest == NULL)
         nearest = mf_nearest_name(line->files[0], names, count);

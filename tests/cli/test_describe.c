@@ -121,6 +121,21 @@ static void test_describe_of_an_observable_names_the_target_of_that_name(void **
     assert_contains(result.out, "see `mesofit describe rdf-target`");
 }
 
+/// Who looks for a key finds the objects that have it.
+static void test_describe_of_a_key_tells_where_it_is(void **state) {
+    static const char *const wanted[][2] = {{"molecules", "see mesofit describe molecule\n"},
+                                            {"scene.box", "see mesofit describe scene\n"},
+                                            {"every", "see mesofit describe measure, verif"}};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        RUN_PROGRAM(&result, "describe", wanted[k][0]);
+        run_program_assert_code(&result, 2);
+        assert_contains(result.err, wanted[k][1]);
+    }
+    RUN_PROGRAM(&result, "describe", "simualte"); // no key
+    assert_contains(result.err, "is not known");
+}
+
 static void test_describe_says_which_integrator_is_the_default(void **state) {
     assert_default(*state, SCENE_WITH(", \"dissipative\": {\"law\": \"power\", \"sigma\": 3}"),
                    "aboba", "with");
@@ -137,6 +152,7 @@ int main(void) {
         TEST(test_describe_knows_every_topic_that_it_names),
         TEST(test_describe_of_a_group_is_all_that_it_holds),
         TEST(test_describe_of_an_observable_names_the_target_of_that_name),
+        TEST(test_describe_of_a_key_tells_where_it_is),
         TEST(test_describe_says_which_integrator_is_the_default),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
