@@ -3,15 +3,20 @@
 
 #include "base/interrupt.h"
 
+enum status mf_fit_engine_expect(const struct fit_file *fit, const struct engine_door *door) {
+    if (fit->engine.kind == ENGINE_NONE && door && door->command)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "--engine: the run file has no \"engine\" that says what the "
+                              "command is: {\"name\": \"lammps\"} or \"command\"");
+    return STATUS_OK;
+}
+
 enum status mf_fit_engine_open(struct fit_file *fit, const struct engine_door *door,
                                const char *folder, bool resume) {
-    const bool named = door && door->command;
+    TRY(mf_fit_engine_expect(fit, door));
     if (fit->engine.kind == ENGINE_NONE)
-        return named ? mf_status_fail(STATUS_BAD_INPUT,
-                                      "--engine: the run file has no \"engine\" that says what the "
-                                      "command is: {\"name\": \"lammps\"} or \"command\"")
-                     : STATUS_OK;
-    if (!named)
+        return STATUS_OK;
+    if (door == NULL || door->command == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "engine: its command stands on the command line, as a run file "
                               "starts nothing: mesofit fit ... --engine \"COMMAND\"");

@@ -4,6 +4,10 @@
 
 #include "defaults/fit_file.h"
 
+/// Refuse a command line with an engine beside a run file without one. Fails: BAD_INPUT.
+enum status mf_fit_engine_expect(const struct fit_file *fit,
+                                 const struct engine_door *door) MUST_USE;
+
 /// Open it for the problem of the fit; nothing if the file has none.
 /// @param[in]  door    who opens, with the command; NULL: nobody
 /// @param[in]  folder  of the fit

@@ -8,6 +8,7 @@
 #include "work/explain.h"
 #include "work/fit.h"
 #include "defaults/fit_states.h"
+#include "work/fit_engine.h"
 #include "work/fit_tasks.h"
 #include "work/fit_print.h"
 
@@ -202,6 +203,7 @@ enum status mf_fit_explain(const char *file, const struct run_options *options, 
     struct fit_file fit;
     CHECK(mf_fit_file_read(&fit, file, options));
     CHECK(mf_fit_states_normalise(&fit));
+    CHECK(mf_fit_engine_expect(&fit, options->engine));
     status = try_method(&fit);
     CHECK(status != STATUS_OK ? mf_status_prefix(status, "%s", file) : STATUS_OK);
     mf_explain_scale(stdout, &fit.scene.units);

@@ -267,6 +267,9 @@ static void refuse(void *state, const char *from, const char *to, const char *co
 static void test_wrong_settings_are_refused(void **state) {
     refuse(*state, NULL, NULL, NULL, "--engine \"COMMAND\"");
     refuse(*state, ENGINE, "\"core\": {}", COMMAND, "the run file has no \"engine\"");
+    RUN_PROGRAM(&result, "fit", "wrong.json", "--engine", COMMAND, "--explain");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "the run file has no \"engine\""));
     refuse(*state, ", \"frames\": \"frames.extxyz\"", "", COMMAND, "engine.frames: missing");
     refuse(*state, "\"steps\": 20", "\"input\": \"in.lmp\"", COMMAND, "engine.input");
     refuse(*state, "\"name\": \"auto\", " PLAN, "\"name\": \"cma-es\"", COMMAND,
