@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import ItemsView, Iterator, KeysView
 from typing import Any
 
 import numpy as np
@@ -177,14 +177,15 @@ class Table:
 _OTHERS = re.compile(r"(^|_)(history|flat|lower|upper)$|^now(_|$)")
 
 
-class Curves(Mapping):  # type: ignore[type-arg]
+class Curves:
     """Curves of one kind: a table for each pair of types, by the name "A-B"; "" of beads that are
-    alike. A single one has its columns, their units, its plot and its conversions directly.
+    alike. A single one has its values, columns, units, plot and conversions directly.
 
     Notes
     -----
-    A mapping: ``curves["A-B"]`` is a `Table`. Of a single one ``curves["phi"]`` is a column, shape
-    (rows,), and ``numpy.asarray(curves)`` has all.
+    ``curves["A-B"]`` is a `Table`, and ``for name, table in curves.items()`` has all of them. Of a
+    single one ``curves["phi"]`` is a column, shape (rows,), and ``numpy.asarray(curves)`` its
+    values.
     """
 
     def __init__(self, name: str, tables: dict[str, Table]) -> None:
@@ -207,6 +208,11 @@ class Curves(Mapping):  # type: ignore[type-arg]
             raise InputError(f"{self.name}: there are {len(self._tables)}: "
                              f"{', '.join(self._tables)}")
         return next(iter(self._tables.values()))
+
+    @property
+    def values(self) -> Array:
+        """Those of the only table, shape (rows, columns)."""
+        return self.table.values
 
     @property
     def columns(self) -> tuple[str, ...]:
@@ -261,6 +267,27 @@ class Curves(Mapping):  # type: ignore[type-arg]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._tables)
+
+    def __contains__(self, part: object) -> bool:
+        return part in self._tables or (len(self._tables) == 1 and part in self.table)
+
+    def keys(self) -> KeysView[str]:
+        """Names of the pairs of types.
+
+        Returns
+        -------
+        keys of a dict
+        """
+        return self._tables.keys()
+
+    def items(self) -> ItemsView[str, Table]:
+        """Pairs of types with their tables.
+
+        Returns
+        -------
+        items of a dict
+        """
+        return self._tables.items()
 
     def __len__(self) -> int:
         return len(self._tables)

@@ -15,7 +15,7 @@ import numpy as np
 from . import _library as c
 from ._errors import InputError
 from ._library import Array
-from ._inputs import Frames, Memory, PathLike, absolute, from_universe, merge
+from ._inputs import Frames, Memory, PathLike, absolute, array_of, from_universe, merge, numbers
 from ._observables import Observables
 from ._result import Result, _path
 from ._run import Folder, carry_out
@@ -378,22 +378,27 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
     files, back = _frames(trajectory, memory)
     words = ["measure", *files]
     words += _options(
-        structure=None if structure is None else Path(structure),
+        structure=None if structure is None else absolute(structure, "structure"),
         map=None if map is None else Path(_maps(map, memory)),
         molecules=None if molecules is None else Path(_lend(molecules, {}, "molecules", memory)),
         begin=begin, end=end, every=every, range=range, bins=bins, q_range=q_range, waves=waves,
         density_profile=density_profile, profile_bins=profile_bins,
-        weighted_density=None if weighted_density is None
-        else ",".join(repr(float(x)) for x in weighted_density), window=window,
+        weighted_density=_list(weighted_density, "weighted_density"), window=window,
         escape=escape, velocities=velocities, static=static, temperature=temperature,
         units=units, allow_truncated=allow_truncated, file_units=file_units,
         file_time_step=file_time_step, file_group=file_group,
-        box=None if box is None else ",".join(repr(float(x)) for x in np.atleast_1d(box)),
+        box=_list(box, "box"),
         beads=None if beads is None else absolute(beads, "beads"), threads=threads)
     try:
         return _carry_out(words, memory, folder, False, force, progress)
     finally:
         back()
+
+
+def _list(values: Any, what: str) -> str | None:
+    """Numbers, or one of them, as an option takes them."""
+    return None if values is None else ",".join(
+        repr(float(x)) for x in numbers(np.atleast_1d(array_of(values, what)), what, (None,)))
 
 
 def _maps(map: Content | Sequence[PathLike], memory: Memory) -> str:

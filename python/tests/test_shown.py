@@ -34,6 +34,8 @@ def test_results_and_tables_show_themselves(fitted, monkeypatch):
     assert only.columns[:2] == ("r", "phi") and only.units[0] == "lambda"
     assert np.array_equal(only, only.table.values, equal_nan=True) and len(only.to_dict()) > 3
     assert np.array_equal(only.to_dict()["force"], only["force"], equal_nan=True)
+    assert only.values is only.table.values and "phi" in only and "omega" not in only
+    assert dict(only.items()).keys() == only.keys() == {""}
     assert repr(table).startswith("<Table rdf: ") and "fit in" in repr(fitted)
     with pytest.raises(ImportError, match="pip install matplotlib"):
         fitted.potential.plot()

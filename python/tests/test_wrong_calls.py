@@ -104,6 +104,13 @@ CALLS = {
 }
 
 
+@pytest.mark.parametrize("name, bad", [("structure", 3), ("box", "wide"), ("box", {"a": 1}),
+                                       ("weighted_density", "x"), ("weighted_density", object())])
+def test_measure_names_the_argument_that_is_wrong(name, bad):
+    with pytest.raises(mesofit.InputError, match=name):
+        mesofit.measure("x.xtc", **{name: bad})
+
+
 @pytest.mark.parametrize("call", CALLS.values(), ids=CALLS.keys())
 def test_calls(call):
     with pytest.raises((mesofit.Error, TypeError, OSError)):
