@@ -150,6 +150,8 @@ static enum status result_of_all(const void *const *states, size_t count,
                                  const struct observable_values *values) {
     const struct etd *const *etd = (const struct etd *const *)states;
     TRY(mf_etd_result(etd, count, values->value, values->error, NULL));
+    for (size_t k = 0; values->freedom && k < count; k++)
+        *values->freedom += (double)etd[k]->blocks - (k == 0);
     // At time 0 all are there: no measurement.
     for (size_t k = 0; k < (size_t)etd[0]->grid.bins; k++)
         values->value[k] = NAN;

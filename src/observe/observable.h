@@ -62,6 +62,7 @@ struct observable_values {
     size_t count;    ///< 0: not asked for
     const double *x; ///< shape [count]: where a curve is to be evaluated, as the target has it
     double *value, *error; ///< shape [count], zeroed; NaN: not measured
+    double *freedom;       ///< degrees of freedom of the errors, at most, or NULL: nobody asks
 };
 
 struct observable {

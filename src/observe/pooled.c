@@ -14,12 +14,14 @@ void mf_pooled_add(const struct observable_values *values, const double *value, 
 
 void mf_pooled_join(const struct observable_values *values, const struct pooled_curve *replicas,
                     size_t count) {
-    for (size_t k = 0; k < count; k++)
-        mf_pooled_add(values, replicas[k].value, replicas[k].error, count);
-    if (count < 2)
-        return;
     const double inside = (double)count * fmax(0, replicas->blocks - 1),
                  between = (double)count - 1;
+    for (size_t k = 0; k < count; k++)
+        mf_pooled_add(values, replicas[k].value, replicas[k].error, count);
+    if (values->freedom)
+        *values->freedom = inside + between;
+    if (count < 2)
+        return;
     for (size_t k = 0; k < values->count; k++) {
         double *error = &values->error[k], squares = 0;
         for (size_t n = 0; n < count; n++)

@@ -210,8 +210,10 @@ static enum status find_result(const struct measurement *replicas, size_t count,
     for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++)
         if (found.observable == observable) {
             const struct target *target = &replicas->targets->target[kind];
-            values[found.number] = (struct observable_values){
-                target->count, target->x, observed->value[kind], observed->error[kind]};
+            values[found.number] =
+                (struct observable_values){target->count, target->x, observed->value[kind],
+                                           observed->error[kind], &observed->freedom[kind]};
+            observed->freedom[kind] = 0;
             asked = asked || target->count > 0;
         }
     if (!asked)

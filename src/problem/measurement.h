@@ -58,6 +58,7 @@ const void *mf_measurement_state(const struct measurement *measurement,
 /// at most 2 × TARGETS.
 struct observed {
     double *value[TARGETS], *error[TARGETS]; ///< shape [target.count], NaN: not measured
+    double freedom[TARGETS]; ///< degrees of freedom of the errors, at most; 0: not told
 };
 enum status mf_measurement_values_init(struct observed *observed,
                                        const struct targets *targets) MUST_USE;

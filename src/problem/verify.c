@@ -226,40 +226,6 @@ static enum status run_replicas(struct work *work) {
     return STATUS_OK;
 }
 
-/// Keep the distance of a part of a target if it is the farthest so far, by its noise.
-static void add_part(const struct inverse_problem *problem, int kind, size_t first, size_t count,
-                     struct verification *verification) {
-    struct target target = problem->compared.target[kind];
-    struct target_distance *worst = &verification->worst[kind];
-    if (target.count == 0)
-        return;
-    target.count = count;
-    target.value += first;
-    target.error += first;
-    const struct target_distance distance =
-        mf_targets_distance(&target, verification->observed.value[kind] + first,
-                            verification->observed.error[kind] + first);
-    if (worst->count == 0 || distance.rms * worst->noise > worst->rms * distance.noise)
-        *worst = distance;
-}
-
-/// Of the pair types, the groups of each order and the integrals, the one that is farthest from its
-/// target.
-static void find_worst(const struct inverse_problem *problem, struct verification *verification) {
-    const int integrals = mf_kirkwood_buff_kind();
-    verification->worst[integrals] = mf_targets_worst(&problem->compared.target[integrals],
-                                                      verification->observed.value[integrals],
-                                                      verification->observed.error[integrals]);
-    for (size_t g = 0; g < problem->bonded; g++) {
-        const struct bonded_unknown *group = &problem->group[g];
-        add_part(problem, mf_group_kind_target(group->order), group->first, group->bins.count,
-                 verification);
-    }
-    const size_t bins = problem->compared.bins.count;
-    for (size_t first = 0; first < problem->compared.target[TARGET_RDF].count; first += bins)
-        add_part(problem, TARGET_RDF, first, bins, verification);
-}
-
 /// Whether the temperature that another engine has told is that of the scene.
 static void doubt_engine(const struct simulation_setup *setup, struct verification *verification) {
     static const double allowed = 0.025, errors = 3;
@@ -385,8 +351,8 @@ static enum status verify_once(struct work *work, struct verification *verificat
     CHECK(summarise(replicas, count, verification));
     if (!verification->by_engine) // whose time step is not ours
         *off = mf_thermodynamics_off(&verification->thermodynamics, &replicas->simulation.setup);
-    find_worst(work->problem, verification);
-    CHECK(mf_verify_sections_find(work->problem, replicas, count, &verification->sections));
+    CHECK(mf_verify_sections_find(work->problem, replicas, count, &verification->observed,
+                                  &verification->sections));
     CHECK(keep_configuration(&replicas->simulation.particles, verification));
 done:
     clear_replicas(replicas, count);

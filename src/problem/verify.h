@@ -23,11 +23,10 @@ extern const struct field mf_verify_fields[];
 struct verification {
     struct observed observed;
     struct target_distance distance[TARGETS];
-    struct target_distance worst[TARGETS]; ///< of the pair type, the group, or the integral of
-                                           ///< Kirkwood and Buff, that is farthest off by its noise
-    struct verify_sections sections;       ///< of what is to be found
     double distance_error[TARGETS]; ///< standard error of each distance, by leaving out replicas;
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
+    struct verify_sections sections;
+    struct verify_agreement agreement[TARGETS]; ///< with what was to be met; the caller's
     struct thermodynamics_summary thermodynamics;
     struct thermodynamics_shift shift;
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0

@@ -84,17 +84,70 @@ static enum status add_groups(const struct potential_grid *grid, const struct me
     return STATUS_OK;
 }
 
-enum status mf_verify_sections_find(const struct inverse_problem *problem,
-                                    const struct measurement *replicas, size_t count,
-                                    struct verify_sections *sections) {
+static enum status add_distributions(const struct inverse_problem *problem,
+                                     const struct measurement *replicas, size_t count,
+                                     struct verify_sections *sections) {
     CLEARED_BY(mf_potential_grid_clear) struct potential_grid grid = {0};
     const bool pairs = problem->unknown[UNKNOWN_POTENTIAL].wanted;
-    *sections = (struct verify_sections){0};
     if (pairs ? !targets_ask(&problem->targets, TARGET_RDF) : problem->bonded == 0)
         return STATUS_OK;
     TRY(mf_potential_grid_init(&grid, problem));
     TRY(add_pairs(&grid, replicas, count, sections));
     return add_groups(&grid, replicas, count, sections);
+}
+
+static bool has_section(const struct verify_sections *sections, int kind) {
+    bool found = false;
+    for (size_t s = 0; s < sections->count; s++)
+        found = found || sections->section[s].kind == kind;
+    return found;
+}
+
+/// How many independent numbers the values of a target are, by the scatter of the replicas, and how
+/// well their errors are known. Values that are not known do not scatter.
+/// @param[in] own  of each replica, shape [count]
+static enum status find_curve(const struct target *target, int kind, const struct observed *own,
+                              size_t count, double freedom, struct statistics_independence *found) {
+    OWNED double *values = NULL;
+    TRY_ARRAY(values, target->count * count);
+    for (size_t k = 0; k < target->count; k++)
+        for (size_t r = 0; r < count; r++) {
+            const double value = own[r].value[kind][k];
+            values[k * count + r] = isfinite(target->value[k]) && isfinite(value) ? value : 0;
+        }
+    TRY(mf_statistics_independence(values, 1, count, target->count, found));
+    found->freedom = freedom > 0 ? freedom : INFINITY;
+    return STATUS_OK;
+}
+
+static enum status add_curves(const struct targets *targets, const struct measurement *replicas,
+                              size_t count, const struct observed *observed,
+                              struct verify_sections *sections) {
+    enum status status = STATUS_OK;
+    struct observed *own = NULL;
+    NEW_ARRAY(own, count);
+    for (size_t r = 0; r < count; r++) {
+        CHECK(mf_measurement_values_init(&own[r], replicas->targets));
+        CHECK(mf_measurement_result(&replicas[r], 1, &own[r]));
+    }
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (targets_ask(targets, kind) && !has_section(sections, kind))
+            CHECK(find_curve(&targets->target[kind], kind, own, count, observed->freedom[kind],
+                             &sections->curve[kind]));
+done:
+    for (size_t r = 0; own && r < count; r++)
+        mf_measurement_values_clear(&own[r]);
+    mf_memory_free(own);
+    return status;
+}
+
+enum status mf_verify_sections_find(const struct inverse_problem *problem,
+                                    const struct measurement *replicas, size_t count,
+                                    const struct observed *observed,
+                                    struct verify_sections *sections) {
+    *sections = (struct verify_sections){0};
+    TRY(add_distributions(problem, replicas, count, sections));
+    return add_curves(&problem->targets, replicas, count, observed, sections);
 }
 
 // Judging -----------------------------------------------------------------------------------------
@@ -136,7 +189,7 @@ static double find_share(const struct targets *targets, const struct observed *o
     return (noise * noise - of_targets * of_targets) / (of_verification * of_verification);
 }
 
-/// χ² by bin that noise alone exceeds with a chance. Errors that are known by few values are as
+/// χ² by bin that noise alone exceeds with this chance. Errors that are known by few values are as
 /// often too small: F instead of χ².
 static double find_probable(const struct statistics_independence *known, double chance) {
     static const double many = 200; // F is that of known errors, and GSL's inverse fails at times
@@ -148,21 +201,33 @@ static double find_probable(const struct statistics_independence *known, double 
     return isfinite(probable) ? probable : gsl_cdf_chisq_Qinv(chance, numbers) / numbers;
 }
 
-/// A target with few counts has too small an error where they are fewer than expected: it is that
-/// of the counts that the result expects, if these are more.
-static double target_variance(const struct target *target, size_t k, double value) {
+/// Of counts, those of a target have too small an error where they are fewer than expected: it is
+/// that of the counts that the result expects, if these are more.
+static double target_variance(const struct target *target, bool counted, size_t k, double value) {
     const double error = known_or_0(target->error[k]);
     const double counts = fmax(target->value[k], error);
-    return error > 0 ? error * error * fmax(1, value / counts) : 0;
+    return error > 0 ? error * error * (counted ? fmax(1, value / counts) : 1) : 0;
 }
 
-/// A distribution beside its target.
+/// What was observed beside its target.
 struct comparison {
     const struct targets *targets;
     const struct target *target;
     const double *value, *error;
     double share;
+    bool counted; ///< values are counts
 };
+
+static struct comparison compare(const struct targets *targets, int kind,
+                                 const struct observed *observed, double share) {
+    const struct target *const target = &targets->target[kind];
+    return (struct comparison){targets,
+                               target,
+                               observed->value[kind],
+                               observed->error[kind],
+                               share,
+                               kind == TARGET_RDF || target->block};
+}
 
 /// What χ² is made of, with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins
 /// have in common: Σ x²/σ² − (Σ c x/σ²)²/(1 + Σ c²/σ²).
@@ -174,7 +239,7 @@ struct sums {
 static struct sums add_up(const struct comparison *of, size_t first, size_t end, double factor) {
     struct sums sums = {0};
     for (size_t k = first; k < end; k++) {
-        const double variance = target_variance(of->target, k, of->value[k]) +
+        const double variance = target_variance(of->target, of->counted, k, of->value[k]) +
                                 (1 + of->share) * pow(known_or_0(of->error[k]), 2);
         const double common = common_error(of->targets, of->target, k);
         const double difference = of->value[k] - of->target->value[k] - factor * common;
@@ -195,7 +260,7 @@ enum { STRETCH = 6 };
 /// Few values drown among the others, as those that few pairs reach. Of g(r): U of groups is made
 /// smooth at the end.
 static void find_stretch(const struct comparison *of, const struct verify_section *section,
-                         double factor, struct verify_agreement *agreement) {
+                         double factor, double chance, struct verify_agreement *agreement) {
     const size_t end = section->first + section->count;
     struct statistics_independence known = section->known;
     const double independent = known.numbers / (double)section->count;
@@ -205,7 +270,7 @@ static void find_stretch(const struct comparison *of, const struct verify_sectio
         const struct sums sums = add_up(of, first, last, factor);
         known.numbers = independent * sums.bins;
         const double probable =
-            find_probable(&known, false_alarms * STRETCH / (2.0 * (double)section->count));
+            find_probable(&known, chance * STRETCH / (2.0 * (double)section->count));
         const double misfit = sums.bins > 0 ? sums.square / sums.bins : 0;
         if (misfit * agreement->stretch.probable > agreement->stretch.misfit * probable)
             agreement->stretch = (struct verify_stretch){first, misfit, probable};
@@ -214,10 +279,10 @@ static void find_stretch(const struct comparison *of, const struct verify_sectio
 
 static struct verify_agreement assess(const struct targets *targets,
                                       const struct verify_section *section,
-                                      const struct observed *observed, double share) {
-    const struct comparison of = {targets, &targets->target[section->kind],
-                                  observed->value[section->kind], observed->error[section->kind],
-                                  share};
+                                      const struct observed *observed, double share,
+                                      double chance) {
+    struct comparison of = compare(targets, section->kind, observed, share);
+    of.counted = true;
     const struct sums sums = add_up(&of, section->first, section->first + section->count, 0);
     const double factor = sums.along / (1 + sums.common);
     struct target part = *of.target;
@@ -228,34 +293,121 @@ static struct verify_agreement assess(const struct targets *targets,
         .distance =
             mf_targets_distance(&part, of.value + section->first, of.error + section->first),
         .misfit = sums.bins > 0 ? (sums.square - sums.along * factor) / sums.bins : 0,
-        .probable = find_probable(&section->known, false_alarms)};
+        .probable = find_probable(&section->known, chance)};
     if (section->kind == TARGET_RDF)
-        find_stretch(&of, section, factor, &agreement);
+        find_stretch(&of, section, factor, chance, &agreement);
     return agreement;
 }
 
-/// Of a number, whose noise is that of the fit's samples, too.
-static void assess_number(const struct targets *targets, int kind, const struct observed *observed,
-                          double share, struct verify_agreement *agreement) {
-    const struct target *const target = &targets->target[kind];
-    if (target->count != 1 || !isfinite(observed->value[kind][0]))
-        return;
-    agreement->distance = mf_targets_distance(target, observed->value[kind], observed->error[kind]);
-    agreement->distance.noise =
-        hypot(known_or_0(target->error[0]), sqrt(1 + share) * known_or_0(observed->error[kind][0]));
+/// Keep what noise alone explains least.
+static void keep(struct verify_agreement *worst, struct verify_agreement own) {
+    if (worst->probable == 0 || verify_agreement_off(&own) > verify_agreement_off(worst))
+        *worst = own;
+}
+
+// Targets without sections ------------------------------------------------------------------------
+
+/// The rms difference over a part, and that of its errors, those of the fit's samples, too.
+static struct target_distance distance_of(const struct comparison *of,
+                                          const struct verify_part *part) {
+    struct target_distance distance = {0};
+    double squares = 0, noise = 0;
+    for (size_t n = 0; n < part->rows * part->columns; n++) {
+        const size_t k = (part->row + n / part->columns) * of->target->columns + part->column +
+                         n % part->columns;
+        const double difference = of->value[k] - of->target->value[k];
+        if (!isfinite(difference))
+            continue;
+        squares += difference * difference;
+        noise += pow(known_or_0(of->target->error[k]), 2) +
+                 (1 + of->share) * pow(known_or_0(of->error[k]), 2);
+        distance.count++;
+    }
+    distance.rms = sqrt(squares / (double)distance.count);
+    distance.noise = sqrt(noise / (double)distance.count);
+    return distance;
+}
+
+static struct verify_agreement assess_part(const struct comparison *of,
+                                           const struct verify_part *part, double probable) {
+    struct sums sums = {0};
+    for (size_t row = part->row; row < part->row + part->rows; row++) {
+        const size_t first = row * of->target->columns + part->column;
+        const struct sums own = add_up(of, first, first + part->columns, 0);
+        sums.square += own.square;
+        sums.along += own.along;
+        sums.common += own.common;
+        sums.bins += own.bins;
+    }
+    const double square = sums.square - sums.along * sums.along / (1 + sums.common);
+    return (struct verify_agreement){.distance = distance_of(of, part),
+                                     .misfit = sums.bins > 0 ? square / sums.bins : 0,
+                                     .probable = probable,
+                                     .part = *part};
+}
+
+enum { MAX_EDGES = 66, TENTHS = 10 };
+
+/// Where the parts of an axis begin, and its end: of times from one power of two to the next, of
+/// others tenths. Returns how many parts there are.
+static size_t find_edges(size_t count, bool of_time, size_t edge[MAX_EDGES]) {
+    const size_t tenths = count < TENTHS ? count : TENTHS;
+    size_t parts = 0;
+    if (of_time)
+        for (size_t k = 0; k < count; k = k == 0 ? 1 : 2 * k)
+            edge[parts++] = k;
+    else
+        for (; parts < tenths; parts++)
+            edge[parts] = parts * count / tenths;
+    edge[parts] = count;
+    return parts;
+}
+
+static bool is_curve_of_time(int kind) {
+    const struct observable_kind found = mf_observable_kind(kind);
+    return found.observable && found.target->form == OBSERVABLE_CURVE_OF_TIME;
+}
+
+/// The whole by its independent numbers, and each part as one number.
+static void assess_curve(const struct targets *targets, int kind,
+                         const struct statistics_independence *known,
+                         const struct observed *observed, double share, double chance,
+                         struct verify_agreement *worst) {
+    const struct comparison of = compare(targets, kind, observed, share);
+    const bool matrix = of.target->columns > 0;
+    const size_t columns = matrix ? of.target->columns : of.target->count;
+    size_t row[MAX_EDGES], column[MAX_EDGES];
+    const size_t above = find_edges(matrix ? of.target->count / columns : 1, true, row);
+    const size_t across = find_edges(columns, !matrix && is_curve_of_time(kind), column);
+    const size_t parts = above * across;
+    const double own = parts > 1 ? 0.5 * chance : chance;
+    const struct verify_part whole = {0, row[above], 0, columns};
+    const struct statistics_independence one = {1, known->freedom};
+    const double probable = find_probable(&one, own / (double)parts);
+    keep(worst, assess_part(&of, &whole, find_probable(known, own)));
+    for (size_t p = 0; parts > 1 && p < parts; p++) {
+        const size_t i = p / across, j = p % across;
+        const struct verify_part part = {row[i], row[i + 1] - row[i], column[j],
+                                         column[j + 1] - column[j]};
+        keep(worst, assess_part(&of, &part, probable));
+    }
 }
 
 void mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
                      const struct observed *observed, double noise,
                      struct verify_agreement *agreement) {
     const double share = find_share(targets, observed, noise);
-    for (int kind = 0; kind < TARGETS; kind++)
+    size_t tests = sections->count;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        tests += sections->curve[kind].numbers > 0;
         agreement[kind] = (struct verify_agreement){0};
-    for (size_t s = 0; s < sections->count; s++) {
-        struct verify_agreement *const worst = &agreement[sections->section[s].kind];
-        const struct verify_agreement own = assess(targets, &sections->section[s], observed, share);
-        if (worst->probable == 0 || verify_agreement_off(&own) > verify_agreement_off(worst))
-            *worst = own;
     }
-    assess_number(targets, TARGET_PRESSURE, observed, share, &agreement[TARGET_PRESSURE]);
+    const double chance = false_alarms / (double)tests;
+    for (size_t s = 0; s < sections->count; s++)
+        keep(&agreement[sections->section[s].kind],
+             assess(targets, &sections->section[s], observed, share, chance));
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (sections->curve[kind].numbers > 0)
+            assess_curve(targets, kind, &sections->curve[kind], observed, share, chance,
+                         &agreement[kind]);
 }

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Whether distributions of a verification are those of their targets, but for noise.
+/// @file Whether what a verification measures is what its targets say, but for noise.
 ///
 /// As an inversion assesses its samples (inversion/inversion_assess): each section, g(r) of a pair
 /// type or p of a group, by its χ² by bin, and by how many independent bins it has, as bins next to
-/// each other are off together.
+/// each other are off together. Any other target likewise as a whole, and then in each of its
+/// parts, as one mean hides a misfit in a few of its values: times from one power of two to the
+/// next, tenths of r_0 or of any other argument. How values of a part are correlated is not known
+/// well enough. The mean of χ² over them is above a bound no more often than that of one value, so
+/// that it is judged as one value is. All bounds together are exceeded by noise in one of a
+/// thousand fits.
 ///
 /// The noise is that of the target, of the verification, and of the fit's own samples: the
 /// potential was found where *their* g is the target's, so that its own g misses it by their noise,
@@ -27,6 +32,8 @@ enum { VERIFY_MAX_SECTIONS = COMPOSITION_MAX_PAIRS + INVERSE_MAX_BONDED };
 struct verify_sections {
     size_t count;
     struct verify_section section[VERIFY_MAX_SECTIONS];
+    struct statistics_independence
+        curve[TARGETS]; ///< of targets without sections; numbers 0: not asked for
 };
 
 /// A few values beside each other.
@@ -36,12 +43,16 @@ struct verify_stretch {
     double probable; ///< what noise alone exceeds in one of a thousand over all stretches
 };
 
-/// Of the section of a kind of targets that is least probable.
+/// Of the section or part of a kind of targets that is least probable.
 struct verify_agreement {
     struct target_distance distance;
     double misfit;   ///< χ² by bin
     double probable; ///< what noise alone exceeds in one of a thousand; 0: nothing was assessed
     struct verify_stretch stretch; ///< that is farthest off
+    struct verify_part {
+        size_t row, rows;       ///< of a matrix; else 0 and 1
+        size_t column, columns; ///< of a matrix; else consecutive values
+    } part;
 };
 
 /// How far it is off, 1 being what noise alone exceeds: as a whole, or in a stretch of it.
@@ -56,10 +67,13 @@ static inline bool verify_agreement_holds(const struct verify_agreement *agreeme
     return !(verify_agreement_off(agreement) > 1);
 }
 
-/// Find the sections of what is to be found of a problem. Fails: NO_MEMORY.
+/// Find the sections of what is to be found of a problem, and what is known of its other targets.
+/// Fails: NO_MEMORY.
 /// @param[in] replicas  shape [count], with all samples
+/// @param[in] observed  what they have measured together
 enum status mf_verify_sections_find(const struct inverse_problem *problem,
                                     const struct measurement *replicas, size_t count,
+                                    const struct observed *observed,
                                     struct verify_sections *sections) MUST_USE;
 
 /// @param[in]  noise      mf_targets_noise of the fit's last samples; 0: it has none

@@ -48,81 +48,138 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
     return false;
 }
 
-/// The fitted target that is farthest off, in its statistical errors, and its name; NaN if the
-/// errors of none are known.
-static double find_farthest(const struct fit_file *fit, const struct verification *verification,
-                            const char **name) {
-    double farthest = NAN;
+/// What of a fit's targets is met least. Where errors are so badly known that noise may reach ten
+/// of them, nothing is.
+struct farthest {
+    const struct fit_file *state;
+    int kind;
+    const struct verify_agreement *agreement; ///< NULL: the errors of none are known
+};
+
+static struct farthest find_farthest(const struct fit_file *fit,
+                                     const struct verification *verification) {
+    static const double nothing = 100; // χ² by value
+    struct farthest farthest = {0};
     for (size_t s = 0; s <= fit->others; s++)
         for (int kind = 0; kind < TARGETS; kind++) {
-            const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
-            const struct target_distance *distance = &verification[s].worst[kind];
-            if (distance->count == 0)
-                distance = &verification[s].distance[kind];
-            if (!targets_ask(&state->problem.targets, kind) || !(distance->noise > 0) ||
-                distance->rms / distance->noise <= farthest)
-                continue;
-            farthest = distance->rms / distance->noise;
-            *name = mf_targets_name(kind);
+            const struct verify_agreement *own = &verification[s].agreement[kind];
+            const struct verify_agreement *most = farthest.agreement;
+            if (own->probable > 0 && own->probable < nothing && own->distance.noise > 0 &&
+                (most == NULL || verify_agreement_off(own) > verify_agreement_off(most)))
+                farthest = (struct farthest){s == 0 ? fit : &fit->other[s - 1], kind, own};
         }
     return farthest;
 }
 
-/// How far a target may be off that is met, in its errors: as inversions end.
-static const double within = 1.7;
+/// " from 0.1 to 0.2 ps", " at 0.1 ps".
+enum { RANGE_SIZE = 64 };
+static void describe_range(const char *before, double first, double last, const struct units *units,
+                           const char *quantity, char text[RANGE_SIZE]) {
+    const double factor = mf_units_factor(units, quantity);
+    char unit[UNITS_NAME_SIZE];
+    mf_units_suffix(units, quantity, unit);
+    if (first == last)
+        snprintf(text, RANGE_SIZE, "%.12s at %.3g%.12s", before, factor * first, unit);
+    else
+        snprintf(text, RANGE_SIZE, "%.12s from %.3g to %.3g%.12s", before, factor * first,
+                 factor * last, unit);
+}
+
+/// "etd from 0.1 to 0.2 ps for r_0 from 0.6 to 0.7 nm by 5.1 times its statistical error (by
+/// chance up to 3.9)".
+enum { FARTHEST_SIZE = 224 };
+static void describe_farthest(const struct farthest *farthest, char text[FARTHEST_SIZE]) {
+    const struct targets *targets = &farthest->state->problem.targets;
+    const struct verify_part *part = &farthest->agreement->part;
+    const struct units *units = &farthest->state->scene.units;
+    const struct etd_grid *grid = &targets->etd;
+    char times[RANGE_SIZE] = "", lengths[RANGE_SIZE] = "";
+    if (farthest->kind == TARGET_VACF || farthest->kind == TARGET_MSD)
+        describe_range("", targets->motion_interval * (double)part->column,
+                       targets->motion_interval * (double)(part->column + part->columns - 1), units,
+                       "tau", times);
+    if (farthest->kind == TARGET_ETD) {
+        const double width = (grid->r_maximum - grid->r_minimum) / (double)grid->bins;
+        describe_range("", targets->etd_interval * (double)part->row,
+                       targets->etd_interval * (double)(part->row + part->rows - 1), units, "tau",
+                       times);
+        describe_range(" for r_0", grid->r_minimum + width * (double)part->column,
+                       grid->r_minimum + width * (double)(part->column + part->columns), units,
+                       "lambda", lengths);
+    }
+    snprintf(text, FARTHEST_SIZE,
+             "%.24s%s%s by %.2g times its statistical error (by chance up to %.2g)",
+             mf_targets_name(farthest->kind), times, lengths, sqrt(farthest->agreement->misfit),
+             sqrt(farthest->agreement->probable));
+}
+
+/// The cutoff of ω, which no fit changes: ", 1.5 nm,".
+enum { CUTOFF_SIZE = UNITS_NAME_SIZE + 32 };
+static void describe_cutoff(const struct fit_file *fit, char text[CUTOFF_SIZE]) {
+    const struct unknown *const omega = &fit->problem.unknown[UNKNOWN_OMEGA];
+    char unit[UNITS_NAME_SIZE];
+    text[0] = '\0';
+    if (omega->wanted)
+        snprintf(text, CUTOFF_SIZE, ", %g%.64s,",
+                 mf_units_factor(&fit->scene.units, "lambda") * omega->parameters.cutoff,
+                 mf_units_suffix(&fit->scene.units, "lambda", unit));
+}
 
 bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verification *verification,
-                              char reason[INVERSE_REASON_SIZE]) {
-    const struct unknown *const omega = &fit->problem.unknown[UNKNOWN_OMEGA];
-    const char *name = "";
-    char cutoff[UNITS_NAME_SIZE + 32] = "", unit[UNITS_NAME_SIZE];
+                              double noise, char reason[INVERSE_REASON_SIZE]) {
+    char cutoff[CUTOFF_SIZE], off[FARTHEST_SIZE];
     bool finds = false;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         finds = finds || (unknown_is_omega(kind) && fit->problem.unknown[kind].wanted);
-    const double farthest = find_farthest(fit, verification, &name);
-    if (!finds || !(farthest > within))
+    const struct farthest farthest = find_farthest(fit, verification);
+    if (!finds || farthest.agreement == NULL || verify_agreement_holds(farthest.agreement))
         return false;
-    if (omega->wanted)
-        snprintf(cutoff, sizeof cutoff, ", %g%.64s,",
-                 mf_units_factor(&fit->scene.units, "lambda") * omega->parameters.cutoff,
-                 mf_units_suffix(&fit->scene.units, "lambda", unit));
-    snprintf(reason, INVERSE_REASON_SIZE,
-             "the nearest omega of this form is still off: %s by %.2g times its statistical error; "
-             "another cutoff than that given or chosen%s which no fit changes, a \"curve\" with "
-             "more freedom or more \"coefficients\" may do, if the target can be met at all",
-             name, farthest, cutoff);
+    describe_farthest(&farthest, off);
+    describe_cutoff(fit, cutoff);
+    if (mf_targets_error(&fit->problem.targets, verification->distance) < noise)
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the samples of the fit cannot see how far omega is still off, but its "
+                 "verification can: %s; more \"samples\" of the method",
+                 off);
+    else
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the nearest omega of this form is still off: %s; "
+                 "another cutoff than that given or chosen%s which no fit changes, a \"curve\" "
+                 "with more freedom or more \"coefficients\" may do, if the target can be met at "
+                 "all",
+                 off, cutoff);
     return true;
 }
 
-void mf_fit_closing_verdict(const struct fit_result *result, const char *noise, double farthest,
-                            const char *name, char text[FIT_VERDICT_SIZE]) {
-    const bool agrees = farthest <= within;
+void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result *result,
+                            const char *noise, char text[FIT_VERDICT_SIZE]) {
+    const struct farthest farthest = find_farthest(fit, result->verification);
+    const bool agrees = farthest.agreement && verify_agreement_holds(farthest.agreement);
     const char *word = noise[0]          ? "undetermined"
                        : agrees          ? "success"
                        : result->settled ? "converged"
                                          : "finished";
-    char off[128];
-    snprintf(off, sizeof off,
-             "differ from the targets by up to %.2g times the statistical error (%s)", farthest,
-             name);
+    char off[FARTHEST_SIZE] = "";
+    if (farthest.agreement)
+        describe_farthest(&farthest, off);
     if (result->status != STATUS_OK)
         snprintf(text, FIT_VERDICT_SIZE, "the fit did not succeed; the reason follows");
-    else if (isnan(farthest))
-        snprintf(text, FIT_VERDICT_SIZE, "unknown: the verification has no errors");
+    else if (farthest.agreement == NULL)
+        snprintf(text, FIT_VERDICT_SIZE,
+                 "unknown: the verification has too few samples for errors to judge by");
     else
-        snprintf(text, FIT_VERDICT_SIZE, "%s: independent simulations %s%s%.*s", word,
-                 agrees ? "agree with the targets within their errors" : off,
-                 noise[0] ? ", but " : "", (int)strcspn(noise, ":"), noise);
+        snprintf(text, FIT_VERDICT_SIZE, "%s: independent simulations %s%s%s%.*s", word,
+                 agrees ? "agree with the targets within their errors"
+                        : "differ from the targets, most ",
+                 agrees ? "" : off, noise[0] ? ", but " : "", (int)strcspn(noise, ":"), noise);
 }
 
 /// Whether the fit succeeded.
 static void print_verdict(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result) {
-    const char *name = "";
     char noise[INVERSE_REASON_SIZE] = "", text[FIT_VERDICT_SIZE];
-    const double farthest = find_farthest(fit, result->verification, &name);
     mf_fit_closing_is_noise(unknowns, result->curve, result->curve_error, &fit->scene.units, noise);
-    mf_fit_closing_verdict(result, noise, farthest, name, text);
+    mf_fit_closing_verdict(fit, result, noise, text);
     mf_progress_print(to, "result: %s", text);
 }
 

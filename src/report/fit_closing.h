@@ -24,20 +24,20 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *cons
                              char reason[INVERSE_REASON_SIZE]);
 
 /// Whether independent simulations of a friction weight that was found are farther from a fitted
-/// target than its errors: such a fit has not converged to it, however well the method settled.
+/// target than noise explains: such a fit has not converged to it, however well the method settled.
 /// Why, into `reason`. Tested: test_fit_closing.
+/// @param[in] noise  that of the samples of the fit, in mf_targets_error
 bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verification *verification,
-                              char reason[INVERSE_REASON_SIZE]);
+                              double noise, char reason[INVERSE_REASON_SIZE]);
 
-enum { FIT_VERDICT_SIZE = 256 };
+enum { FIT_VERDICT_SIZE = 512 };
 
 /// Whether the fit succeeded: it has, if independent simulations agree with the targets within
-/// their errors and what was fitted is known. Tested: test_fit_closing.
-/// @param[in] noise     why it is not known, of mf_fit_closing_is_noise, or ""
-/// @param[in] farthest  distance of the target `name`, the farthest off, in its errors; NaN: no
-/// errors
-void mf_fit_closing_verdict(const struct fit_result *result, const char *noise, double farthest,
-                            const char *name, char text[FIT_VERDICT_SIZE]);
+/// their errors (problem/verify_agreement.h) and what was fitted is known. Tested:
+/// test_fit_closing.
+/// @param[in] noise  why it is not known, of mf_fit_closing_is_noise, or ""
+void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result *result,
+                            const char *noise, char text[FIT_VERDICT_SIZE]);
 
 /// Say them.
 void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,

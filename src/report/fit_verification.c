@@ -161,12 +161,13 @@ static void find_cause(const struct verification *verification, double temperatu
 }
 
 /// Whether a Kirkwood-Buff integral is off.
-static bool contradicts_integrals(const struct verification *verification, double noise_margin,
+static bool contradicts_integrals(const struct verification *verification,
                                   const struct units *units, char reason[INVERSE_REASON_SIZE]) {
-    const struct target_distance *worst = &verification->worst[mf_kirkwood_buff_kind()];
+    const struct verify_agreement *agreement = &verification->agreement[mf_kirkwood_buff_kind()];
+    const struct target_distance *worst = &agreement->distance;
     const double volume = mf_units_factor(units, "lambda^d");
     char unit[UNITS_NAME_SIZE];
-    if (!(worst->rms > noise_margin * worst->noise))
+    if (verify_agreement_holds(agreement))
         return false;
     snprintf(reason, INVERSE_REASON_SIZE,
              "a Kirkwood-Buff integral of the verification is off by %.2g%.16s (statistical error "
@@ -217,7 +218,7 @@ static void report_structure(const char *name, const struct rdf_bins *bins,
                  agreement->misfit, agreement->probable);
     snprintf(reason, INVERSE_REASON_SIZE,
              "the fit's samples agree with %.24s, but its verification is off by %.2g (statistical "
-             "error %.2g%s) at %.60s: %s",
+             "error %.2g%s) at %.60s: %.340s",
              name, distance->rms, distance->noise, where, state, cause);
 }
 
@@ -238,17 +239,17 @@ static bool contradicts_temperature(const struct verification *verification, dou
 }
 
 bool mf_fit_verification_contradicts(const struct verification *verification,
-                                     const struct verify_agreement *agreement,
                                      const struct targets *fitted, double temperature,
-                                     double noise_margin, const struct units *units,
-                                     char reason[INVERSE_REASON_SIZE]) {
+                                     const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    const struct verify_agreement *const agreement = verification->agreement;
     const double bar = mf_units_factor(units, "k_B T_0/lambda^d");
     char unit[UNITS_NAME_SIZE];
     mf_units_suffix(units, "k_B T_0/lambda^d", unit);
     const bool several = fitted->bins.count < fitted->target[TARGET_RDF].count;
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &agreement[TARGET_PRESSURE].distance;
-    if (targets_ask(fitted, TARGET_PRESSURE) && pressure->rms > noise_margin * pressure->noise) {
+    if (targets_ask(fitted, TARGET_PRESSURE) &&
+        !verify_agreement_holds(&agreement[TARGET_PRESSURE])) {
         char cause[FIT_STEP_TEXT_SIZE];
         if (mf_fit_step_shifts_pressure(verification))
             snprintf(cause, sizeof cause,
@@ -265,7 +266,7 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
         return true;
     }
     if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&
-        contradicts_integrals(verification, noise_margin, units, reason))
+        contradicts_integrals(verification, units, reason))
         return true;
     for (int order = 0; order <= INVERSE_LOCAL_DENSITY; order++) {
         const int kind = mf_group_kind_target(order);

@@ -10,16 +10,12 @@
 
 /// Why the verified g(r), or the pressure or an integral of Kirkwood and Buff if it was fitted, is
 /// not that of the fit, or the temperature more than 5 % off, into `reason`.
-/// @param[in] agreement     of distributions, shape [TARGETS]
+/// @param[in] verification  with its agreement
 /// @param[in] fitted        the targets that were fitted
-/// @param[in] noise_margin  a pressure or an integral may be off by this many times its
-///                          statistical error
 /// Returns whether there is a reason. Tested: test_fit_verification.
 bool mf_fit_verification_contradicts(const struct verification *verification,
-                                     const struct verify_agreement *agreement,
                                      const struct targets *fitted, double temperature,
-                                     double noise_margin, const struct units *units,
-                                     char reason[INVERSE_REASON_SIZE]);
+                                     const struct units *units, char reason[INVERSE_REASON_SIZE]);
 
 /// Why the verified error of all targets is not the one that a method measured itself: it is larger
 /// by five standard errors of the difference and by a quarter. The best of many candidates is a

@@ -252,17 +252,17 @@ static void own_file(void *context, const char *name, char *path) {
 /// Remember an iteration and put it on disk.
 static enum status record(struct run *run, const struct inverse_step *step) {
     keep_curves(run, step);
-    run->standing =
-        (struct standing){.finished = step->finished,
-                          .converged = step->converged,
-                          .exhausted = step->exhausted,
-                          .iterations = step->iteration + 1,
-                          .evaluations = step->evaluations,
-                          .engine_steps = step->engine_steps,
-                          .accuracy = {.error = step->error, .variance = step->variance},
-                          .time = time_of(run),
-                          .ramp = step->ramp,
-                          .slowest = step->slowest};
+    run->standing = (struct standing){
+        .finished = step->finished,
+        .converged = step->converged,
+        .exhausted = step->exhausted,
+        .iterations = step->iteration + 1,
+        .evaluations = step->evaluations,
+        .engine_steps = step->engine_steps,
+        .accuracy = {.error = step->error, .variance = step->variance, .of_samples = step->noise},
+        .time = time_of(run),
+        .ramp = step->ramp,
+        .slowest = step->slowest};
     memcpy(run->standing.accuracy.noise, step->noise_of_state, sizeof run->standing.accuracy.noise);
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.number, step->number, sizeof run->standing.number);
@@ -333,7 +333,7 @@ static enum status write_unstable(struct run *run) {
 }
 
 /// The verification has the last word.
-static void doubt(struct run *run, const struct verification *verification) {
+static void doubt(struct run *run, struct verification *verification) {
     struct standing *standing = &run->standing;
     if (!standing->converged && !standing->exhausted)
         return;
@@ -344,7 +344,8 @@ static void doubt(struct run *run, const struct verification *verification) {
              (mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
                                       (const double *const *)run->curve_error,
                                       &run->fit.scene.units, standing->reason) ||
-              mf_fit_closing_is_missed(&run->fit, verification, standing->reason))) {
+              mf_fit_closing_is_missed(&run->fit, verification, standing->accuracy.of_samples,
+                                       standing->reason))) {
         standing->converged = false;
         standing->exhausted = true;
     }

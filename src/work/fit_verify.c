@@ -154,32 +154,31 @@ static void name_state(const struct fit_file *state, char reason[INVERSE_REASON_
 
 static bool is_contradicted(const struct fit_file *state, const struct inverse_method *method,
                             const struct verification *verification,
-                            const struct fit_accuracy *of_fit, double noise,
-                            char reason[INVERSE_REASON_SIZE]) {
-    static const double noise_margin = 3;
+                            const struct fit_accuracy *of_fit, char reason[INVERSE_REASON_SIZE]) {
     const struct targets *targets = &state->problem.targets;
     const struct units *units = &state->scene.units;
     const double temperature = state->problem.scene.temperature;
-    struct verify_agreement agreement[TARGETS];
     if (method->kind != INVERSE_INVERSION)
         return mf_fit_verification_is_worse(verification, targets, of_fit->error, of_fit->variance,
                                             reason);
     if (method->restricted)
         return mf_fit_verification_is_worse_than_samples(
             verification, targets, of_fit->error, of_fit->variance, temperature, units, reason);
-    mf_verify_agree(targets, &verification->sections, &verification->observed, noise, agreement);
-    return mf_fit_verification_contradicts(verification, agreement, targets, temperature,
-                                           noise_margin, units, reason);
+    return mf_fit_verification_contradicts(verification, targets, temperature, units, reason);
 }
 
-bool mf_fit_verify_any_contradicts(const struct fit_file *fit,
-                                   const struct verification *verification,
+bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verification *verification,
                                    const struct fit_accuracy *of_fit,
                                    char reason[INVERSE_REASON_SIZE]) {
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
-        if (!is_contradicted(state, fit->method, &verification[s], of_fit, of_fit->noise[s],
-                             reason))
+        struct verification *const own = &verification[s];
+        mf_verify_agree(&state->problem.targets, &own->sections, &own->observed, of_fit->noise[s],
+                        own->agreement);
+    }
+    for (size_t s = 0; s <= fit->others; s++) {
+        const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
+        if (!is_contradicted(state, fit->method, &verification[s], of_fit, reason))
             continue;
         if (state->name[0])
             name_state(state, reason);

@@ -14,6 +14,7 @@ enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder 
 /// How far a fit is from its targets, by itself.
 struct fit_accuracy {
     double error, variance;           ///< as in struct inverse_step
+    double of_samples;                ///< its noise
     double noise[INVERSE_MAX_STATES]; ///< of each state, of inversions
 };
 
@@ -37,9 +38,8 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
 /// only if the result agrees with the target, by the same measure as its samples did
 /// (problem/verify_agreement.h). Other methods, and inversions by few coefficients, do not say that
 /// they agree, but how far they are off: that is what must be borne out.
-/// @param[in] verification  shape [states]
-bool mf_fit_verify_any_contradicts(const struct fit_file *fit,
-                                   const struct verification *verification,
+/// @param[in,out] verification  shape [states]; how far each agrees with its targets is found
+bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verification *verification,
                                    const struct fit_accuracy *of_fit,
                                    char reason[INVERSE_REASON_SIZE]);
 

@@ -13,11 +13,12 @@ static const double rounding = 1e-14;
 static double error_of(size_t count, double blocks, double *mean) {
     static const double found[] = {1, 3, 5}, own = 0.6;
     struct pooled_curve replicas[3];
-    double value = 0, error = 0;
-    const struct observable_values values = {1, NULL, &value, &error};
+    double value = 0, error = 0, freedom = NAN;
+    const struct observable_values values = {1, NULL, &value, &error, &freedom};
     for (size_t k = 0; k < count; k++)
         replicas[k] = (struct pooled_curve){&found[k], &own, blocks};
     mf_pooled_join(&values, replicas, count);
+    assert_close(freedom, (double)count * blocks - 1, rounding * (double)count * blocks);
     *mean = value;
     return error;
 }

@@ -76,7 +76,7 @@ static void still_clear(struct still *still) {
 /// S at one wave number, as a target asks for it.
 static double read_at(const struct still *still, double q, double *error) {
     double value = 0, own_error = 0;
-    const struct observable_values values = {1, &q, &value, &own_error};
+    const struct observable_values values = {1, &q, &value, &own_error, NULL};
     assert_ok(mf_pooled_result(still->use.observable, (const void *const[]){still->use.state}, 1,
                                &values));
     if (error)

@@ -107,6 +107,7 @@ static void test_agreement_knows_the_noise_of_the_fit_in_the_pressure(void **sta
         (struct target){.count = 1, .value = &wanted, .error = &target_error};
     of.observed.value[TARGET_PRESSURE] = &value;
     of.observed.error[TARGET_PRESSURE] = &error;
+    of.sections.curve[TARGET_PRESSURE] = (struct statistics_independence){1, INFINITY};
     mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
     assert_close(agreement[TARGET_PRESSURE].distance.rms, 0.1, 1e-12);
     assert_close(agreement[TARGET_PRESSURE].distance.noise, 5, 1e-12);
@@ -227,6 +228,114 @@ static void test_agreement_is_of_the_least_probable_section(void **state) {
     assert_true(verify_agreement_holds(&agreement[TARGET_PRESSURE]));
 }
 
+enum { LAGS = 64, ROWS = 33, COLUMNS = 20, CELLS = ROWS * COLUMNS };
+
+/// A VACF and escape times whose values and errors are given.
+struct curves {
+    double wanted[CELLS], target_error[CELLS], value[CELLS], error[CELLS];
+    struct targets targets;
+    struct observed observed;
+    struct verify_sections sections;
+};
+
+static void make_curves(struct curves *of, int kind, double freedom, double numbers) {
+    *of = (struct curves){0};
+    const size_t count = kind == TARGET_ETD ? CELLS : LAGS;
+    for (size_t k = 0; k < count; k++) {
+        of->wanted[k] = of->value[k] = 0.5;
+        of->target_error[k] = 0.0003;
+        of->error[k] = 0.0004;
+    }
+    of->targets.target[kind] = (struct target){.count = count,
+                                               .columns = kind == TARGET_ETD ? COLUMNS : 0,
+                                               .value = of->wanted,
+                                               .error = of->target_error};
+    of->observed.value[kind] = of->value;
+    of->observed.error[kind] = of->error;
+    of->sections.curve[kind] = (struct statistics_independence){numbers, freedom};
+}
+
+static struct verify_agreement judge(const struct curves *of, int kind) {
+    struct verify_agreement agreement[TARGETS];
+    mf_verify_agree(&of->targets, &of->sections, &of->observed, 0, agreement);
+    return agreement[kind];
+}
+
+/// A VACF that is right but in its second lag, six errors off: one hundredth of the mean of χ²,
+/// which is 1.5. What was told by the mean alone agreed.
+static void test_agreement_sees_a_misfit_at_short_times(void **state) {
+    struct curves of;
+    (void)state;
+    make_curves(&of, TARGET_VACF, 200, 20);
+    for (uint32_t k = 0; k < LAGS; k++)
+        of.value[k] += 0.0005 * normal_of(3, k);
+    const struct verify_agreement good = judge(&of, TARGET_VACF);
+    assert_true(verify_agreement_holds(&good));
+    of.value[1] = 0.5 + 6 * 0.0005;
+    const struct verify_agreement bad = judge(&of, TARGET_VACF);
+    assert_false(verify_agreement_holds(&bad));
+    assert_int_equal(bad.part.column, 1);
+    assert_int_equal(bad.part.columns, 1);
+    assert_close(bad.misfit, 36, 1e-9);
+}
+
+/// Escape times that are off by six errors for a tenth of r_0, and at times from 8 to 15 alone.
+static void test_agreement_sees_a_misfit_of_some_r_0(void **state) {
+    struct curves of;
+    (void)state;
+    make_curves(&of, TARGET_ETD, 200, 100);
+    for (size_t row = 8; row < 16; row++)
+        for (size_t column = 4; column < 6; column++)
+            of.value[row * COLUMNS + column] += 6 * 0.0005;
+    const struct verify_agreement bad = judge(&of, TARGET_ETD);
+    assert_false(verify_agreement_holds(&bad));
+    assert_int_equal(bad.part.row, 8);
+    assert_int_equal(bad.part.rows, 8);
+    assert_int_equal(bad.part.column, 4);
+    assert_int_equal(bad.part.columns, 2);
+}
+
+/// How many of 2000 right results are told to be off, if errors are known by `freedom` values and
+/// neighbours are as correlated as `share` says: 0 not at all, 1 wholly.
+static int count_alarms(int kind, double freedom, double share) {
+    enum { TRIALS = 2000 };
+    const size_t count = kind == TARGET_ETD ? CELLS : LAGS;
+    int wrong = 0;
+    struct curves of;
+    double squares = (double)count;
+    for (size_t k = 1; k < count; k++)
+        squares += 2 * (double)(count - k) * pow(share, 2.0 * (double)k);
+    make_curves(&of, kind, freedom, (double)(count * count) / squares);
+    for (uint32_t trial = 0; trial < TRIALS; trial++) {
+        double last = normal_of(trial, 0), scatter = 0;
+        for (uint32_t n = 0; n < (uint32_t)freedom && freedom < 200; n++)
+            scatter += pow(normal_of(trial, 5000 + n), 2) / freedom;
+        for (uint32_t k = 0; k < count; k++) {
+            last = k == 0 ? last : share * last + sqrt(1 - share * share) * normal_of(trial, k);
+            of.target_error[k] = 0;
+            of.error[k] = 0.0005 * (freedom < 200 ? sqrt(scatter) : 1);
+            of.value[k] = 0.5 + 0.0005 * last;
+        }
+        const struct verify_agreement found = judge(&of, kind);
+        wrong += !verify_agreement_holds(&found);
+    }
+    print_message("of %d: %d, with %g degrees of freedom, correlation %g\n", TRIALS, wrong, freedom,
+                  share);
+    return wrong;
+}
+
+/// All parts and the whole together are exceeded by noise in one of a thousand, however neighbours
+/// are correlated.
+static void test_agreement_of_all_parts_is_wrong_in_one_of_a_thousand(void **state) {
+    (void)state;
+    static const double shares[] = {0, 0.7, 0.97, 1};
+    for (int k = 0; k < 4; k++) {
+        assert_true(count_alarms(TARGET_VACF, 1e6, shares[k]) <= 6);
+        assert_true(count_alarms(TARGET_VACF, 30, shares[k]) <= 6);
+        assert_true(count_alarms(TARGET_ETD, 1e6, shares[k]) <= 6);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_agreement_depends_on_how_many_bins_are_independent),
@@ -239,6 +348,9 @@ int main(void) {
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit_where_a_value_is_not_known),
         cmocka_unit_test(test_agreement_is_bounded_where_the_inverse_of_f_fails),
         cmocka_unit_test(test_agreement_is_of_the_least_probable_section),
+        cmocka_unit_test(test_agreement_sees_a_misfit_at_short_times),
+        cmocka_unit_test(test_agreement_sees_a_misfit_of_some_r_0),
+        cmocka_unit_test(test_agreement_of_all_parts_is_wrong_in_one_of_a_thousand),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,50 +57,77 @@ static void test_closing_says_so_where_most_of_a_friction_weight_is_noise(void *
     mf_unknowns_clear(&unknowns);
 }
 
+/// A fit of E(t, r_0) at two times of two r_0, and what its verification was found to be.
+struct closed {
+    struct fit_file fit;
+    struct fit_result result;
+    struct verification verification;
+};
+
+static struct closed *make_closed(double errors) {
+    static struct closed closed;
+    static const double value[6] = {1, 1, 0.5, 0.5, 0.2, 0.2};
+    closed = (struct closed){.result = {.status = STATUS_OK, .settled = true}};
+    closed.result.verification = &closed.verification;
+    struct targets *const targets = &closed.fit.problem.targets;
+    targets->target[TARGET_ETD] = (struct target){.count = 6, .columns = 2, .value = value};
+    targets->etd = (struct etd_grid){0.5, 1.5, 2, 3};
+    targets->etd_interval = 0.1;
+    closed.verification.agreement[TARGET_ETD] = (struct verify_agreement){
+        {errors * 0.01, 0.01, .count = 1}, errors * errors, 16, .part = {1, 1, 1, 1}};
+    return &closed;
+}
+
 /// Success is agreement within the errors, of something that is known.
 static void test_closing_calls_success_only_what_agrees_and_is_known(void **state) {
     (void)state;
     static const char noise[] = "omega is mostly noise: only 38 % of it is";
     char text[FIT_VERDICT_SIZE];
-    struct fit_result result = {.status = STATUS_OK, .settled = true};
-    mf_fit_closing_verdict(&result, "", 1.2, "rdf", text);
+    struct closed *closed = make_closed(3.9);
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
     assert_string_equal(text, "success: independent simulations agree with the targets within "
                               "their errors");
-    mf_fit_closing_verdict(&result, "", 2.1, "rdf", text);
-    assert_string_equal(text, "converged: independent simulations differ from the targets by up "
-                              "to 2.1 times the statistical error (rdf)");
-    result.settled = false;
-    mf_fit_closing_verdict(&result, "", 2.1, "rdf", text);
-    assert_contains(text, "finished: independent simulations differ");
-    mf_fit_closing_verdict(&result, noise, 1.2, "etd", text);
+    mf_fit_closing_verdict(&closed->fit, &closed->result, noise, text);
     assert_string_equal(text, "undetermined: independent simulations agree with the targets "
                               "within their errors, but omega is mostly noise");
-    mf_fit_closing_verdict(&result, noise, 2.1, "etd", text);
-    assert_contains(text, "statistical error (etd), but omega is mostly noise");
-    mf_fit_closing_verdict(&result, "", NAN, "", text);
+    closed = make_closed(5.2);
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    assert_string_equal(text, "converged: independent simulations differ from the targets, most "
+                              "etd at 0.1 for r_0 from 1 to 1.5 by 5.2 times its statistical error "
+                              "(by chance up to 4)");
+    closed->result.settled = false;
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    assert_contains(text, "finished: independent simulations differ");
+    mf_fit_closing_verdict(&closed->fit, &closed->result, noise, text);
+    assert_contains(text, "(by chance up to 4), but omega is mostly noise");
+    closed->verification.agreement[TARGET_ETD].probable = 144; // errors that three values tell
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
     assert_contains(text, "unknown: ");
-    result.status = STATUS_UNCONVERGED;
-    mf_fit_closing_verdict(&result, noise, 1.2, "etd", text);
+    closed->result.status = STATUS_UNCONVERGED;
+    mf_fit_closing_verdict(&closed->fit, &closed->result, noise, text);
     assert_contains(text, "did not succeed");
 }
 
 /// A friction weight has not converged to targets that it does not meet.
 static void test_closing_says_so_where_a_friction_weight_misses_its_targets(void **state) {
     (void)state;
-    static struct fit_file fit;
-    static double value = 0.5;
     char reason[INVERSE_REASON_SIZE];
-    struct verification verification = {.distance[TARGET_ETD] = {.rms = 0.02, .noise = 0.01}};
-    fit.problem.targets.target[TARGET_ETD] =
-        (struct target){.count = 1, .value = &value, .weight = 1};
-    assert_false(mf_fit_closing_is_missed(&fit, &verification, reason));
-    fit.problem.unknown[UNKNOWN_OMEGA] =
-        (struct unknown){.wanted = true, .parameters = {.cutoff = 1.5}};
-    assert_true(mf_fit_closing_is_missed(&fit, &verification, reason));
-    assert_contains(reason, "etd by 2 times its statistical error");
+    struct closed *closed = make_closed(5);
+    struct unknown *const omega = &closed->fit.problem.unknown[UNKNOWN_OMEGA];
+    assert_false(mf_fit_closing_is_missed(&closed->fit, &closed->verification, 0, reason));
+    *omega = (struct unknown){.wanted = true, .parameters = {.cutoff = 1.5}};
+    assert_true(mf_fit_closing_is_missed(&closed->fit, &closed->verification, 0, reason));
+    assert_contains(reason, "etd at 0.1 for r_0 from 1 to 1.5 by 5 times its statistical error");
     assert_contains(reason, "another cutoff than that given or chosen, 1.5, which no fit changes");
-    verification.distance[TARGET_ETD].rms = 0.015;
-    assert_false(mf_fit_closing_is_missed(&fit, &verification, reason));
+    // Samples that cannot see it are no reason for another form of omega.
+    closed->verification.distance[TARGET_ETD] = (struct target_distance){.rms = 0.05};
+    assert_true(mf_fit_closing_is_missed(&closed->fit, &closed->verification, 0.08, reason));
+    assert_contains(reason, "more \"samples\"");
+    assert_true(mf_fit_closing_is_missed(&closed->fit, &closed->verification, 0.03, reason));
+    assert_contains(reason, "another cutoff");
+    closed = make_closed(3);
+    *omega = (struct unknown){.wanted = true, .parameters = {.cutoff = 1.5}};
+    assert_false(mf_fit_closing_is_missed(&closed->fit, &closed->verification, 0, reason));
 }
 
 int main(void) {

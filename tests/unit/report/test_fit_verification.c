@@ -18,7 +18,7 @@ static const struct targets with_pressure = {
 
 static struct verification make(double rms, double temperature, double pressure) {
     return (struct verification){.distance[TARGET_RDF] = {.rms = rms, .noise = 0.002},
-                                 .worst[TARGET_RDF] = {.rms = rms, .noise = 0.002},
+                                 .agreement[TARGET_RDF].distance = {.rms = rms, .noise = 0.002},
                                  .thermodynamics = {.temperature = temperature,
                                                     .temperature_configurational = temperature,
                                                     .temperature_configurational_error = 0.002,
@@ -26,16 +26,16 @@ static struct verification make(double rms, double temperature, double pressure)
 }
 
 /// Of the distances told, by χ² by bin, which noise alone takes to 9 at most.
-static bool contradicts(const struct verification *verification, const struct targets *fitted,
+static bool contradicts(const struct verification *of, const struct targets *fitted,
                         char reason[INVERSE_REASON_SIZE]) {
-    struct verify_agreement agreement[TARGETS];
+    struct verification verification = *of;
     for (int kind = 0; kind < TARGETS; kind++) {
-        const struct target_distance *const worst = &verification->worst[kind];
-        agreement[kind] = (struct verify_agreement){
-            *worst, worst->noise > 0 ? pow(worst->rms / worst->noise, 2) : 0, 9, {0}};
+        struct verify_agreement *const agreement = &verification.agreement[kind];
+        const struct target_distance *const distance = &agreement->distance;
+        agreement->misfit = distance->noise > 0 ? pow(distance->rms / distance->noise, 2) : 0;
+        agreement->probable = 9;
     }
-    agreement[TARGET_PRESSURE].distance = verification->distance[TARGET_PRESSURE];
-    return mf_fit_verification_contradicts(verification, agreement, fitted, 1.5, 3, NULL, reason);
+    return mf_fit_verification_contradicts(&verification, fitted, 1.5, NULL, reason);
 }
 
 static void assert_says(const struct verification *verification, const char *words) {
@@ -55,13 +55,11 @@ static void test_fit_verification_is_silent_when_g_is_off_by_noise(void **state)
 /// An rms below its error is no reason: it is few bins, whose errors are small, that contradict.
 static void test_fit_verification_tells_what_an_rms_hides(void **state) {
     (void)state;
-    struct verify_agreement agreement[TARGETS] = {0};
     char reason[INVERSE_REASON_SIZE];
-    const struct verification found = make(0.0015, 1.5, 3);
-    agreement[TARGET_RDF] =
-        (struct verify_agreement){{.rms = 0.0015, .noise = 0.002}, 4.2, 1.6, {0}};
-    assert_true(
-        mf_fit_verification_contradicts(&found, agreement, &only_rdf, 1.5, 3, NULL, reason));
+    struct verification found = make(0.0015, 1.5, 3);
+    found.agreement[TARGET_RDF].misfit = 4.2;
+    found.agreement[TARGET_RDF].probable = 1.6;
+    assert_true(mf_fit_verification_contradicts(&found, &only_rdf, 1.5, NULL, reason));
     assert_contains(reason, "off by 0.0015 (statistical error 0.002; in single bins more: chi^2 by "
                             "bin is 4.2, by chance 1.6) at T = 1.5");
 }
@@ -73,7 +71,8 @@ static void test_fit_verification_sees_each_pair_type_that_was_fitted(void **sta
     char reason[INVERSE_REASON_SIZE];
     struct verification hidden = make(0.005, 1.5, 3);
     hidden.distance[TARGET_RDF].count = 90;
-    hidden.worst[TARGET_RDF] = (struct target_distance){.rms = 0.008, .noise = 0.002, .count = 30};
+    hidden.agreement[TARGET_RDF].distance =
+        (struct target_distance){.rms = 0.008, .noise = 0.002, .count = 30};
     assert_says(&hidden, "agree with g(r) of all pair types, but its verification is off by 0.008");
     assert_false(contradicts(&hidden, &of_bonds, reason));
 }
@@ -121,8 +120,8 @@ static void test_fit_verification_names_friction_when_the_beads_are_cold(void **
     (void)state;
     struct verification cold = make(0.045, 1, 2);
     assert_says(&cold, "friction");
-    cold.worst[TARGET_RDF].rms = 0;
-    cold.worst[mf_bonded_distribution_kind(BONDED_BOND)] =
+    cold.agreement[TARGET_RDF].distance.rms = 0;
+    cold.agreement[mf_bonded_distribution_kind(BONDED_BOND)].distance =
         (struct target_distance){.rms = 3.4, .noise = 0.18};
     assert_says(&cold, "agree with bond_lengths, but its verification is off by 3.4 (statistical "
                        "error 0.18) at T = 1, pressure 2: the friction is too weak");
@@ -147,7 +146,7 @@ static void test_fit_verification_names_the_pressure_when_it_was_fitted_and_is_o
     (void)state;
     char reason[INVERSE_REASON_SIZE];
     struct verification found = make(0.0021, 1.5, 1.9);
-    found.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 0.4, .noise = 0.1};
+    found.agreement[TARGET_PRESSURE].distance = (struct target_distance){.rms = 0.4, .noise = 0.1};
     assert_false(contradicts(&found, &only_rdf, reason));
     assert_true(contradicts(&found, &with_pressure, reason));
     assert_contains(reason,
@@ -155,7 +154,7 @@ static void test_fit_verification_names_the_pressure_when_it_was_fitted_and_is_o
     found.shift = (struct thermodynamics_shift){-0.35, 0.05};
     assert_true(contradicts(&found, &with_pressure, reason));
     assert_contains(reason, "its time step shifts it by about -0.35");
-    found.distance[TARGET_PRESSURE].rms = 0.29;
+    found.agreement[TARGET_PRESSURE].distance.rms = 0.29;
     assert_false(contradicts(&found, &with_pressure, reason));
 }
 
@@ -166,12 +165,12 @@ static void test_fit_verification_names_an_integral_when_it_was_fitted_and_is_of
     struct targets fitted = only_rdf;
     struct verification found = make(0.0021, 1.5, 1.9);
     fitted.target[kind] = (struct target)ONE;
-    found.worst[kind] = (struct target_distance){.rms = 0.4, .noise = 0.1};
+    found.agreement[kind].distance = (struct target_distance){.rms = 0.4, .noise = 0.1};
     assert_false(contradicts(&found, &only_rdf, reason));
     assert_true(contradicts(&found, &fitted, reason));
     assert_contains(reason, "Kirkwood-Buff integral of the verification is off by 0.4");
     assert_true(strlen(reason) + 1 < INVERSE_REASON_SIZE);
-    found.worst[kind].rms = 0.29;
+    found.agreement[kind].distance.rms = 0.29;
     assert_false(contradicts(&found, &fitted, reason));
 }
 
