@@ -35,12 +35,23 @@ enum status mf_names_collect(const void *list, const char *before, const char **
     return STATUS_OK;
 }
 
-bool mf_names_is_plain(const char *name, const char *marks, size_t size) {
+static bool is_plain(char c, const char *marks) {
     static const char usual[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
+    return c != '\0' && (strchr(usual, c) || strchr(marks, c));
+}
+
+bool mf_names_is_plain(const char *name, const char *marks, size_t size) {
     size_t length = 0;
-    while (name[length] && (strchr(usual, name[length]) || strchr(marks, name[length])))
+    while (is_plain(name[length], marks))
         length++;
     return length > 0 && length < size && name[length] == '\0';
+}
+
+void mf_names_adapt(const char *from, const char *marks, char *name, size_t size) {
+    size_t length = 0;
+    for (; from[length] && length + 1 < size; length++)
+        name[length] = is_plain(from[length], marks) ? from[length] : '_';
+    name[length] = '\0';
 }
 
 bool mf_names_is_reserved(const char *name) {

@@ -32,6 +32,9 @@ enum status mf_names_collect(const void *list, const char *before, const char **
 /// types, since "A-B" is a pair of them, "_-" of all others.
 bool mf_names_is_plain(const char *name, const char *marks, size_t size);
 
+/// What another program calls so, as such a name: what is no letter, digit or mark becomes "_".
+void mf_names_adapt(const char *from, const char *marks, char *name, size_t size);
+
 /// @name Reserved names
 /// Tables, columns and numbers of a result have words before and after the names of types, kinds,
 /// groups and modes: potential_A-B_history.tsv, rdf_now_A-B.tsv, "backbone_error". A name that has

@@ -127,17 +127,19 @@ enum status mf_molecules_file_masses(double mass[COMPOSITION_MAX_TYPES],
     return mf_json_close(document, STATUS_OK);
 }
 
-/// Whether atoms of the trajectory are called as those of the listing, again and again; one without
-/// names must be listed from end to end.
+/// Whether atoms of the trajectory are called as those of the listing, or are of its numbers of
+/// types, again and again; one without names must be listed from end to end.
 static bool is_listed(const struct structure *list, const struct structure *of) {
-    const bool names = list->has_names && of->has_names && list->names == of->names;
+    const bool numbers = list->names == STRUCTURE_TYPES && of->has_types;
+    const bool names = list->has_names && of->has_names && (list->names == of->names || numbers);
     const bool ids = list->has_ids && of->has_ids && list->atoms == of->atoms;
     if (list->atoms == 0 || of->atoms % list->atoms != 0 || (!names && list->atoms != of->atoms))
         return false;
     for (size_t k = 0; k < of->atoms; k++) {
         const struct structure_atom *const a = &list->atom[k % list->atoms], *const b =
                                                                                  &of->atom[k];
-        if ((names && strcmp(a->name, b->name) != 0) || (ids && a->id != b->id))
+        const bool alike = strcmp(a->name, b->name) == 0 || (numbers && a->type == b->type);
+        if ((names && !alike) || (ids && a->id != b->id))
             return false;
     }
     return true;

@@ -2,6 +2,7 @@
 #include "topologies/lammps_kinds.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "topologies/lammps_topology.h"
 
 #include <stdio.h>
@@ -15,9 +16,10 @@ struct finding {
     struct topology *topology;
     struct composition *composition;
     size_t atoms;
-    int *root;      ///< the molecule of an atom
-    int *local;     ///< its number in that
-    int *type;      ///< of the composition
+    int *root;                                 ///< the molecule of an atom
+    int *local;                                ///< its number in that
+    int *type;                                 ///< of the composition
+    const char *called[COMPOSITION_MAX_TYPES]; ///< a type in the file, if types are named
     size_t *member; ///< atoms, molecule after molecule, ids growing in each
     size_t *begin;  ///< where those of a molecule begin; they end where the next atom's do
     int *kind;      ///< of a molecule; −1: of a single bead, or there is none of that atom
@@ -108,11 +110,11 @@ static enum status gather_terms(struct finding *finding, int order) {
 
 static enum status find_type(struct finding *finding, size_t atom) {
     struct composition *composition = finding->composition;
-    char name[32];
+    char name[COMPOSITION_NAME_SIZE];
     int type = 0;
     const struct structure_atom *const is = &finding->source->structure->atom[atom];
     if (finding->source->named)
-        snprintf(name, sizeof name, "%s", is->name);
+        mf_names_adapt(is->name, "_", name, sizeof name);
     else
         snprintf(name, sizeof name, "%lld", (long long)is->type);
     while (type < composition->types && strcmp(composition->name[type], name) != 0)
@@ -120,8 +122,15 @@ static enum status find_type(struct finding *finding, size_t atom) {
     if (type == COMPOSITION_MAX_TYPES)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: atoms are of more than %d types",
                               finding->source->file, COMPOSITION_MAX_TYPES);
-    if (type == composition->types)
-        snprintf(composition->name[composition->types++], COMPOSITION_NAME_SIZE, "%.15s", name);
+    if (type == composition->types) {
+        memcpy(composition->name[composition->types++], name, sizeof name);
+        finding->called[type] = is->name;
+    }
+    if (finding->source->named && strcmp(finding->called[type], is->name) != 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: \"%s\" and \"%s\" would both be the type \"%s\": give the "
+                              "molecules by a JSON file",
+                              finding->source->file, finding->called[type], is->name, name);
     finding->type[atom] = type;
     composition->count[type]++;
     return STATUS_OK;

@@ -31,7 +31,8 @@ struct reading {
     struct molecules *molecules;
     const char *file;
     const struct structure *structure;
-    struct lammps_terms terms; ///< their types are groups
+    struct lammps_terms terms;                           ///< their types are groups
+    uint32_t called[BONDED_KINDS][MOLECULES_MAX_GROUPS]; ///< a group in the file, by its number
 };
 
 // Groups ------------------------------------------------------------------------------------------
@@ -53,24 +54,33 @@ static enum status find_group(struct reading *reading, int order, size_t n, int 
     struct molecules *const molecules = reading->molecules;
     const struct structure_terms *const terms = &reading->structure->terms[order];
     const struct bonded_kind *const kind = mf_bonded_kinds[order];
-    char name[BONDED_MAX_TERM_BEADS * STRUCTURE_NAME + 1];
+    const uint32_t number = terms->type ? terms->type[n] : 0;
+    char called[BONDED_MAX_TERM_BEADS * STRUCTURE_NAME + 1], name[TOPOLOGY_NAME_SIZE];
     if (terms->type)
-        snprintf(name, sizeof name, "%s", terms->name[terms->type[n]]);
+        snprintf(called, sizeof called, "%s", terms->name[number]);
     else
-        name_by_atoms(reading->structure, order, terms->atom + n * (size_t)kind->beads, name,
-                      sizeof name);
+        name_by_atoms(reading->structure, order, terms->atom + n * (size_t)kind->beads, called,
+                      sizeof called);
+    mf_names_adapt(called, "_-", name, sizeof name);
     for (*group = 0; *group < molecules->groups[order]; ++*group)
-        if (strcmp(molecules->group[order][*group].name, name) == 0)
+        if (strcmp(molecules->group[order][*group].name, name) == 0 &&
+            reading->called[order][*group] == number)
             return STATUS_OK;
-    if (!mf_topology_is_name(name))
+        else if (strcmp(molecules->group[order][*group].name, name) == 0)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: %s %zu: \"%s\" and another would both be called \"%s\": "
+                                  "give the molecules by a JSON file",
+                                  reading->file, kind->name, n + 1, called, name);
+    if (strlen(called) >= sizeof name || !mf_topology_is_name(name))
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: %s %zu: \"%s\": expected a group name of " NAMES_OF_OTHERS
                               ": give the molecules by a JSON file",
-                              reading->file, kind->name, n + 1, name, TOPOLOGY_NAME_SIZE - 1);
+                              reading->file, kind->name, n + 1, called, TOPOLOGY_NAME_SIZE - 1);
     if (*group == MOLECULES_MAX_GROUPS)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: more than %d types of %s: give the molecules by a JSON file",
                               reading->file, MOLECULES_MAX_GROUPS, kind->plural);
+    reading->called[order][*group] = number;
     return mf_molecules_add_group(molecules, order, name, kind->laws[0]);
 }
 

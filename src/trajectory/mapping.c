@@ -2,6 +2,7 @@
 #include "trajectory/mapping.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "trajectory/elements.h"
 #include "trajectory/mapping_build.h"
 
@@ -292,11 +293,18 @@ done:
     return status;
 }
 
-/// The type of an atom, by its name or else by the number of its type; `count` if it has none.
+/// The type of an atom: that of its name or, of types that are called by numbers, of its number;
+/// else the type that is of this number in their order; `count` if it has none.
 static size_t type_of(const struct structure_atom *atom, const char *const *types, size_t count,
                       bool *by_number) {
+    char name[STRUCTURE_NAME], number[32];
+    mf_names_adapt(atom->name, "_", name, sizeof name);
+    snprintf(number, sizeof number, "%lld", (long long)atom->type);
     for (size_t type = 0; type < count; type++)
-        if (strcmp(types[type], atom->name) == 0)
+        if (strcmp(types[type], atom->name) == 0 || strcmp(types[type], name) == 0)
+            return type;
+    for (size_t type = 0; type < count; type++)
+        if (strcmp(types[type], number) == 0)
             return type;
     *by_number = true;
     return atom->type >= 1 && (uint64_t)atom->type <= count ? (size_t)atom->type - 1 : count;

@@ -7,7 +7,7 @@
 #include "report/progress.h"
 #include "work/fit_verify.h"
 
-enum { FIT_TELL_SIZE = 160 };
+enum { FIT_TELL_SIZE = 192 };
 
 /// Where an iteration is, in words for the line of its progress. Tested: test_fit_print.
 void mf_fit_print_iteration(const struct inverse_progress *now, const struct units *units,

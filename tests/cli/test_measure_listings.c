@@ -46,23 +46,25 @@ static void write_dump(struct temporary_folder *folder) {
     small_inputs_write(folder, "chains.dump", text, NULL, NULL);
 }
 
-/// The data file, with numbers or labels of types; all atoms are of molecule 1, as some write it.
-static void write_data(struct temporary_folder *folder, const char *name, bool labels) {
-    static const char *const types[] = {"1", "2"}, *const called[] = {"A", "Bb"};
-    const char *const *const type = labels ? called : types;
-    char text[SIZE];
+/// The data file, with numbers or labels of types, the second of which is given; all atoms are of
+/// molecule 1, as some write it.
+static void write_data(struct temporary_folder *folder, const char *name, const char *label) {
+    const char *const type[] = {label ? "A" : "1", label ? label : "2"};
+    char text[SIZE], labels[128] = "", bond[64] = "1";
     int length = 0;
+    if (label) {
+        snprintf(bond, sizeof bond, "A-%s", label);
+        snprintf(labels, sizeof labels,
+                 "\nAtom Type Labels\n\n1 A\n2 %s\n\nBond Type Labels\n\n1 %s\n", label, bond);
+    }
     ADD("by hand\n\n%d atoms\n2 atom types\n%d bonds\n1 bond types\n0 4 xlo xhi\n0 4 ylo yhi\n"
         "0 4 zlo zhi\n%s\nMasses\n\n%s 12\n%s 14 # one\n\nAtoms # bond\n\n",
-        ATOMS, 2 * CHAINS,
-        labels ? "\nAtom Type Labels\n\n1 A\n2 Bb\n\nBond Type Labels\n\n1 A-Bb\n" : "", type[0],
-        type[1]);
+        ATOMS, 2 * CHAINS, labels, type[0], type[1]);
     for (int n = 0; n < ATOMS; n++)
         ADD("%d 1 %s 0 0 %g\n", n + 1, type[n / CHAINS == 1], 0.1 * n);
     ADD("\nBonds\n\n");
     for (int n = 0; n < 2 * CHAINS; n++)
-        ADD("%d %s %d %d\n", n + 1, labels ? "A-Bb" : "1", atom_of(n / 2, n % 2) + 1,
-            atom_of(n / 2, n % 2 + 1) + 1);
+        ADD("%d %s %d %d\n", n + 1, bond, atom_of(n / 2, n % 2) + 1, atom_of(n / 2, n % 2 + 1) + 1);
     small_inputs_write(folder, name, text, NULL, NULL);
 }
 
@@ -82,8 +84,9 @@ static void assert_chains(const char *name, const char *gyration) {
 /// Bonds are between ids, wherever these stand.
 static void test_molecules_are_those_of_a_data_file_of_lammps(void **state) {
     write_dump(*state);
-    write_data(*state, "chains.data", false);
-    write_data(*state, "data.labels", true);
+    write_data(*state, "chains.data", NULL);
+    write_data(*state, "data.labels", "Bb");
+    write_data(*state, "data.signs", "[C*+]");
     MEASURE("chains.dump", "--file-units", "nano", "--molecules", "chains.data", "-o", "numbers");
     assert_chains("molecule-1", "R_g^2 0.07795 "); // of 12, 14 and 12 u
     assert_contains(result.err, "1: 16 beads of 1 atom");
@@ -91,6 +94,11 @@ static void test_molecules_are_those_of_a_data_file_of_lammps(void **state) {
     assert_chains("molecule-1", "R_g^2 0.07795 ");
     assert_contains(result.err, "Bb: 8 beads of 1 atom");
     assert_true(temporary_folder_exists("labels/rdf_A-Bb.tsv"));
+    // What no name of a table may have becomes "_".
+    MEASURE("chains.dump", "--file-units", "nano", "--molecules", "data.signs", "-o", "signs");
+    assert_chains("molecule-1", "R_g^2 0.07795 ");
+    assert_contains(result.err, "_C___: 8 beads of 1 atom");
+    assert_holds("signs/bond_lengths.tsv", "\tA-_C___[1/nm]");
     // As a structure, all of whose atoms are of molecule 1, bonds tell molecules apart.
     MEASURE("chains.dump", "--file-units", "nano", "-s", "chains.data", "-o", "beads");
     assert_contains(result.err, "8 beads of 3 atoms");
@@ -115,6 +123,17 @@ static void test_molecules_are_those_of_a_template_of_lammps(void **state) {
     assert_chains("molecule-1", "R_g^2 0.08222 "); // of equal masses
     assert_holds("out/bond_lengths.tsv", "\t4[1/nm]");
     assert_holds("out/bond_lengths.tsv", "\t7[1/nm]");
+    // Beside a file that has names for the numbers of types.
+    length = 0;
+    ADD("by hand\n\n%d atoms\n2 atom types\n0 4 xlo xhi\n0 4 ylo yhi\n0 4 zlo zhi\n\n"
+        "Atom Type Labels\n\n1 A\n2 Bb\n\nMasses\n\nA 12\nBb 14\n\nAtoms # bond\n\n",
+        ATOMS);
+    for (int n = 0; n < ATOMS; n++)
+        ADD("%d %d %s 0 0 %g\n", n + 1, n / 3 + 1, n % 3 == 1 ? "Bb" : "A", 0.1 * n);
+    small_inputs_write(*state, "named.data", text, NULL, NULL);
+    MEASURE("chains.dump", "--file-units", "nano", "-s", "named.data", "--molecules", "chain.mol",
+            "-o", "named");
+    assert_chains("molecule-1", "R_g^2 0.07795 ");
 }
 
 static void write_gro(struct temporary_folder *folder) {

@@ -72,6 +72,9 @@ static void test_names_that_tables_have_are_found(void **state) {
 
 static void test_plain_names_have_letters_digits_and_marks(void **state) {
     (void)state;
+    char name[8];
+    mf_names_adapt("[NH3+]-C*'1", "_-", name, sizeof name);
+    assert_string_equal(name, "_NH3__-");
     assert_true(mf_names_is_plain("Ring_2", "_", 7));
     assert_false(mf_names_is_plain("Ring_2", "_", 6));
     assert_false(mf_names_is_plain("a-b", "_", 9));
