@@ -252,17 +252,16 @@ static void own_file(void *context, const char *name, char *path) {
 /// Remember an iteration and put it on disk.
 static enum status record(struct run *run, const struct inverse_step *step) {
     keep_curves(run, step);
-    run->standing = (struct standing){
-        .finished = step->finished,
-        .converged = step->converged,
-        .exhausted = step->exhausted,
-        .iterations = step->iteration + 1,
-        .evaluations = step->evaluations,
-        .engine_steps = step->engine_steps,
-        .accuracy = {.error = step->error, .variance = step->variance, .of_samples = step->noise},
-        .time = time_of(run),
-        .ramp = step->ramp,
-        .slowest = step->slowest};
+    run->standing = (struct standing){.finished = step->finished,
+                                      .converged = step->converged,
+                                      .exhausted = step->exhausted,
+                                      .iterations = step->iteration + 1,
+                                      .evaluations = step->evaluations,
+                                      .engine_steps = step->engine_steps,
+                                      .accuracy = {step->error, step->variance, step->noise, {0}},
+                                      .time = time_of(run),
+                                      .ramp = step->ramp,
+                                      .slowest = step->slowest};
     memcpy(run->standing.accuracy.noise, step->noise_of_state, sizeof run->standing.accuracy.noise);
     memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
     memcpy(run->standing.number, step->number, sizeof run->standing.number);
