@@ -41,7 +41,8 @@ struct target {
     double weight;              ///< of its error in the sum; 0: one over the rms of its errors
     size_t columns;             ///< of a matrix, else 0
     const double *factor_error; ///< of g(r): relative error that all values of a pair type have in
-                                ///< common, shape [pair types]; NULL: none
+                                ///< common, shape [pairs]; NULL: none
+    size_t pairs;               ///< pair types of that
     const double *x;     ///< shape [count]: of a curve that is given at its own points, else NULL
     const size_t *block; ///< of distributions: first values of the blocks that are its features,
                          ///< shape [blocks + 1]; NULL: none

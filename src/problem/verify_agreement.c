@@ -160,9 +160,10 @@ static double known_or_0(double error) {
 }
 
 /// The error that value k has in common with the others of its pair type: that of their factor.
-static double common_error(const struct targets *targets, const struct target *target, size_t k) {
+static double common_error(const struct target *target, size_t k) {
     return target->factor_error
-               ? known_or_0(target->factor_error[k / targets->bins.count] * target->value[k])
+               ? known_or_0(target->factor_error[k * target->pairs / target->count] *
+                            target->value[k])
                : 0;
 }
 
@@ -174,8 +175,7 @@ static double find_share(const struct targets *targets, const struct observed *o
     for (int kind = 0; kind < TARGETS; kind++) {
         const struct target *const target = &targets->target[kind];
         for (size_t k = 0; k < target->count; k++) {
-            const double error =
-                hypot(known_or_0(target->error[k]), common_error(targets, target, k));
+            const double error = hypot(known_or_0(target->error[k]), common_error(target, k));
             theirs[kind].noise += error * error / (double)target->count;
             own[kind].noise += pow(known_or_0(observed->error[kind][k]), 2) / (double)target->count;
         }
@@ -211,7 +211,6 @@ static double target_variance(const struct target *target, bool counted, size_t 
 
 /// What was observed beside its target.
 struct comparison {
-    const struct targets *targets;
     const struct target *target;
     const double *value, *error;
     double share;
@@ -221,11 +220,7 @@ struct comparison {
 static struct comparison compare(const struct targets *targets, int kind,
                                  const struct observed *observed, double share) {
     const struct target *const target = &targets->target[kind];
-    return (struct comparison){targets,
-                               target,
-                               observed->value[kind],
-                               observed->error[kind],
-                               share,
+    return (struct comparison){target, observed->value[kind], observed->error[kind], share,
                                kind == TARGET_RDF || target->block};
 }
 
@@ -241,7 +236,7 @@ static struct sums add_up(const struct comparison *of, size_t first, size_t end,
     for (size_t k = first; k < end; k++) {
         const double variance = target_variance(of->target, of->counted, k, of->value[k]) +
                                 (1 + of->share) * pow(known_or_0(of->error[k]), 2);
-        const double common = common_error(of->targets, of->target, k);
+        const double common = common_error(of->target, k);
         const double difference = of->value[k] - of->target->value[k] - factor * common;
         if (!isfinite(difference) || !(variance > 0))
             continue;

@@ -90,7 +90,8 @@ static void describe_range(const char *before, double first, double last, const 
 enum { FARTHEST_SIZE = 224 };
 static void describe_farthest(const struct farthest *farthest, char text[FARTHEST_SIZE]) {
     const struct targets *targets = &farthest->state->problem.targets;
-    const struct verify_part *part = &farthest->agreement->part;
+    const struct verify_agreement *own = farthest->agreement;
+    const struct verify_part *part = &own->part;
     const struct units *units = &farthest->state->scene.units;
     const struct etd_grid *grid = &targets->etd;
     char times[RANGE_SIZE] = "", lengths[RANGE_SIZE] = "";
@@ -107,10 +108,12 @@ static void describe_farthest(const struct farthest *farthest, char text[FARTHES
                        grid->r_minimum + width * (double)(part->column + part->columns), units,
                        "lambda", lengths);
     }
+    const bool whole = own->misfit / own->probable >= verify_agreement_off(own);
     snprintf(text, FARTHEST_SIZE,
              "%.24s%s%s by %.2g times its statistical error (by chance up to %.2g)",
-             mf_targets_name(farthest->kind), times, lengths, sqrt(farthest->agreement->misfit),
-             sqrt(farthest->agreement->probable));
+             mf_targets_name(farthest->kind), times, lengths,
+             sqrt(whole ? own->misfit : own->stretch.misfit),
+             sqrt(whole ? own->probable : own->stretch.probable));
 }
 
 /// The cutoff of ω, which no fit changes: ", 1.5 nm,".

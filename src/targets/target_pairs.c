@@ -276,7 +276,8 @@ static struct target values(const struct target_files *files, int kind) {
                            .value = target->g,
                            .error = target->error,
                            .errors_of = errors_of(target),
-                           .factor_error = target->factor_error};
+                           .factor_error = target->factor_error,
+                           .pairs = target->pairs};
 }
 
 /// rdf_A-B.tsv. Beside g what it was before it was divided by its normalisation, if that changed

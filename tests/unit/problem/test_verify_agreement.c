@@ -157,7 +157,7 @@ static void test_agreement_knows_that_the_factor_of_a_target_is_uncertain(void *
     struct verify_agreement agreement[TARGETS];
     (void)state;
     make(&of, 0.002, 0, 50);
-    of.targets.bins.count = BINS;
+    of.targets.target[TARGET_RDF].pairs = 1;
     for (int k = 0; k < BINS; k++)
         of.value[k] = 0.99;
     assert_false(holds(&of, 0));
@@ -170,7 +170,7 @@ static void test_agreement_knows_that_the_factor_of_a_target_is_uncertain(void *
     assert_false(holds(&of, 0));
     // The noise of a fit has that error, too, and nothing of it is its samples'.
     make(&of, 1e-6, 1e-6, 50);
-    of.targets.bins.count = BINS;
+    of.targets.target[TARGET_RDF].pairs = 1;
     of.targets.target[TARGET_RDF].factor_error = &one_percent;
     for (int k = 0; k < BINS; k++)
         of.value[k] += k % 2 ? 1e-5 : -1e-5;
@@ -184,7 +184,7 @@ static void test_agreement_knows_the_noise_of_the_fit_where_a_value_is_not_known
     struct case_of of;
     (void)state;
     make(&of, 0.002, 1e-4, 50);
-    of.targets.bins.count = BINS;
+    of.targets.target[TARGET_RDF].pairs = 1;
     of.targets.target[TARGET_RDF].factor_error = &exact;
     for (int k = 0; k < BINS; k++)
         of.value[k] += k % 2 ? 0.01 : -0.01;

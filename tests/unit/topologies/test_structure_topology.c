@@ -54,8 +54,8 @@ static void test_what_cannot_be_taken_is_refused(void **state) {
                    "a.psf: no bond joins any atoms");
     assert_refused(state, "PSF\n\n2 !NATOM\n" ATOM(1, "A") ATOM(2, "A") "\n2 !NBOND\n1 2 2 1\n",
                    "a.psf: molecule-1: ");
-    assert_refused(state, "PSF\n\n2 !NATOM\n" ATOM(1, "A") ATOM(2, "A+") "\n1 !NBOND\n1 2\n",
-                   "give the molecules by a JSON file");
+    assert_refused(state, "PSF\n\n2 !NATOM\n" ATOM(1, "A*") ATOM(2, "A+") "\n1 !NBOND\n1 2\n",
+                   "\"A*\" and \"A+\" would both be the type \"A_\": give the molecules by a JSON");
     assert_refused(state,
                    "PSF\n\n6 !NATOM\n" ATOM(1, "A") ATOM(2, "A") ATOM(3, "A") ATOM(4, "A")
                        ATOM(5, "A") ATOM(6, "A") "\n5 !NBOND\n1 2 2 3 4 5 5 6 6 4\n",
