@@ -254,11 +254,12 @@ static void print_readme(const struct export_job *job, FILE *stream) {
                 job->bonded.tables, job->bonded.rows, job->bonded.energy_error,
                 job->bonded.slope_error);
     if (job->densities.terms > 0)
-        fprintf(stream,
-                "Of the tables of \"many_body\" the spline that %s lays through the rows is within "
-                "%.2g k_B T of f and within %.2g\nof its largest slope at densities that the start "
-                "has, for all densities up to the ends said above.\n",
-                job->engine->title, job->densities.error.phi, job->densities.error.force);
+        fprintf(
+            stream,
+            "Of the tables of \"many_body\" what %s reads between the rows is within %.2g k_B T "
+            "of f and within %.2g\nof its largest slope at densities that the start has, from a "
+            "500th of the last density said above on.\n",
+            job->engine->title, job->densities.error.phi, job->densities.error.force);
     if (job->grids.curves > 1)
         fprintf(stream, "\n_lower and _upper are the potential minus and plus one standard error "
                         "at each r. Errors at\ndifferent r are correlated; the two are a band, not "

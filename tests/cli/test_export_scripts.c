@@ -3,7 +3,6 @@
 // Molecules in engines that a Python script drives: OpenMM (Debian's python3-simtk; skipped where
 // there is none) has our energies and forces, law by law, and our g(r). HOOMD-blue and ESPResSo are
 // not in Debian: models of what their manuals say of each call (tests/shared/engines) have them.
-#include "base/rng.h"
 #include "export/export_units.h"
 #include "shared/exported_molecules.h"
 #include "shared/lammps_runs.h"
@@ -66,21 +65,6 @@ static void make_result(struct temporary_folder *folder, bool with_tables) {
 
 enum { PAIRS, BONDS, ANGLES, DIHEDRALS, FORCES, DIFFERENCES };
 
-/// Our simulation of the exported configuration, of which each coordinate is moved by up to 0.05.
-static void move_beads(struct lammps_runs_ours *ours, uint32_t configuration) {
-    struct simulation_start start = {{0}, {0}};
-    struct rng_sequence random = mf_rng_sequence_begin(7, RNG_PLACEMENT, configuration, 0);
-    for (int d = 0; d < 3; d++) {
-        for (size_t k = 0; k < ours->model.count; k++)
-            ours->model.position[d][k] += 0.1 * (mf_rng_sequence_uniform(&random) - 0.5);
-        start.position[d] = ours->model.position[d];
-        start.velocity[d] = ours->model.velocity[d];
-    }
-    mf_simulation_clear(&ours->simulation);
-    assert_ok(mf_simulation_init(&ours->simulation, &ours->model.setup, &start));
-    assert_ok(mf_simulation_compute_potential(&ours->simulation));
-}
-
 static void write_configuration(const struct lammps_runs_ours *ours,
                                 const struct export_units *units, FILE *stream) {
     const struct particles *particles = &ours->simulation.particles;
@@ -116,7 +100,7 @@ static void compare(const char *engine, int configurations, double difference[DI
     fprintf(stream, "%zu\n", ours.model.count);
     for (int k = 0; k < configurations; k++) {
         write_configuration(&ours, &units, stream);
-        move_beads(&ours, (uint32_t)k);
+        lammps_runs_move(&ours, (uint32_t)k);
     }
     fclose(stream);
     lammps_runs_clear_ours(&ours);
