@@ -128,6 +128,8 @@ static const struct field summary_fields[] = {
     NUMBER("temperature_configurational_error", configurational.error, "T_0"),
     NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
     NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
+    NUMBER("compressibility", compressibility.value, "1"),
+    NUMBER("compressibility_error", compressibility.error, "1"),
     NUMBER("diffusion", diffusion.value, "lambda^2/tau"),
     NUMBER("diffusion_error", diffusion.error, "lambda^2/tau"),
     NUMBER("verification_time_step", verified_step, "tau"),

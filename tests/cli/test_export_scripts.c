@@ -138,8 +138,11 @@ static void assert_below(const double difference[DIFFERENCES], double energy, do
     assert_true(difference[FORCES] < force);
 }
 
+enum { CONFIGURATIONS = 100 };
+
+/// Models of engines are slow.
 static int configurations(void) {
-    return length_is_long() ? 100 : 2;
+    return length_is_long() ? CONFIGURATIONS : 2;
 }
 
 /// Numbers of the script have 15 digits, and positions of ours 32 bits.
@@ -147,7 +150,7 @@ static void test_openmm_has_the_energies_and_forces_of_our_laws(void **state) {
     double difference[DIFFERENCES];
     skip_without("openmm");
     make_result(*state, false);
-    compare("openmm", configurations(), difference);
+    compare("openmm", CONFIGURATIONS, difference);
     assert_below(difference, 1e-7, 1e-5);
 }
 
@@ -156,7 +159,7 @@ static void test_openmm_has_those_of_our_tables(void **state) {
     double difference[DIFFERENCES];
     skip_without("openmm");
     make_result(*state, true);
-    compare("openmm", configurations(), difference);
+    compare("openmm", CONFIGURATIONS, difference);
     assert_below(difference, 1e-4, 0.02);
 }
 

@@ -68,7 +68,7 @@ static void write_input(const char *columns, const char *command) {
     FILE *from = fopen("lammps/in.mesofit", "r"), *to = fopen("lammps/in.once", "w");
     char line[4096];
     assert_true(from && to);
-    while (fgets(line, sizeof line, from) && strncmp(line, "fix move", 8) != 0)
+    while (fgets(line, sizeof line, from) && strstr(line, "is_defined(variable,pressure)") == NULL)
         fputs(line, to);
     fprintf(to,
             "unfix bath\nfix move all nve\nthermo 1\nthermo_style custom step %s\n"
@@ -246,8 +246,21 @@ struct lammps_runs_apart lammps_runs_compare(int configurations) {
 
 // Runs -------------------------------------------------------------------------------------------
 
+/// The number in a column of a line, from 0 on.
+static double number_in(const char *line, int column) {
+    char *rest = (char *)line;
+    double value = 0;
+    for (int k = 0; k <= column; k++)
+        value = strtod(rest, &rest);
+    return value;
+}
+
 double lammps_runs_rdf_difference(double unit) {
-    FILE *first = fopen("out/rdf.tsv", "r"), *second = fopen("lammps/rdf.dat", "r");
+    return lammps_runs_rdf_difference_of("out/rdf.tsv", 0, unit);
+}
+
+double lammps_runs_rdf_difference_of(const char *table, int pair, double unit) {
+    FILE *first = fopen(table, "r"), *second = fopen("lammps/rdf.dat", "r");
     char line[512], other[512];
     double squares = 0, shells = 0;
     int rows = 0;
@@ -255,14 +268,14 @@ double lammps_runs_rdf_difference(double unit) {
     for (int k = 0; k < 4; k++) // three comments and the step
         assert_non_null(fgets(other, sizeof other, second));
     while (fgets(line, sizeof line, first)) {
-        double r, g, their_r, their_g;
+        double r, g;
         if (line[0] == '#')
             continue;
         assert_int_equal(sscanf(line, "%lf %lf", &r, &g), 2);
         assert_non_null(fgets(other, sizeof other, second));
-        assert_int_equal(sscanf(other, "%*d %lf %lf", &their_r, &their_g), 2);
-        assert_true(fabs(their_r - unit * r) < 1e-5);     // the same bins
-        squares += r * r * (g - their_g) * (g - their_g); // as many pairs as r²
+        const double their_g = number_in(other, 2 + 2 * pair);
+        assert_true(fabs(number_in(other, 1) - unit * r) < 1e-5); // the same bins
+        squares += r * r * (g - their_g) * (g - their_g);         // as many pairs as r²
         shells += r * r;
         rows++;
     }
@@ -281,9 +294,8 @@ double lammps_runs_mean(int column, double *error) {
     double sum = 0, squares = 0;
     assert_non_null(stream);
     while (fgets(line, sizeof line, stream)) {
-        double v[4];
-        if (line[0] != '#' && sscanf(line, "%lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3]) == 4)
-            values[rows++] = v[column];
+        if (line[0] != '#')
+            values[rows++] = number_in(line, column);
     }
     fclose(stream);
     for (int b = 0; b < BLOCKS; b++) {

@@ -41,10 +41,13 @@ struct lammps_runs_apart {
 struct lammps_runs_apart lammps_runs_compare(int configurations);
 
 /// Root mean square of the difference of g in the last rows of lammps/rdf.dat from that of
-/// out/rdf.tsv, of a hundred bins and one pair type, by the volumes of the bins.
+/// a table of the result, of a hundred bins, by the volumes of the bins.
 /// @param[in] unit  of the engine's length
+/// @param[in] pair  whose columns are compared, from 0 on
+double lammps_runs_rdf_difference_of(const char *table, int pair, double unit);
+/// The same of out/rdf.tsv and one pair type.
 double lammps_runs_rdf_difference(double unit);
 
 /// Mean of a column of lammps/thermo.dat, and its error by twenty blocks. Columns: the step,
-/// temperature, pressure, energy of a particle.
+/// temperature, pressure, energy of a particle, density.
 double lammps_runs_mean(int column, double *error);
