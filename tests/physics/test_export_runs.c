@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Mixtures, chains, and constant pressure in LAMMPS (Debian's lmp; skipped where there is none):
-// energies and forces of a hundred configurations are ours, and a run has our g(r); at another
-// pressure the density is the one that the README tells.
+// What is exported, run as its README says (each skipped where the engine is not installed).
+// LAMMPS, Debian's lmp: energies and forces of a hundred configurations of mixtures and chains are
+// ours, a run has our g(r), and at another pressure the density that the README tells. OpenMM:
+// mixtures; GROMACS: chains without pairs, of which it has no tables; both have our g(r).
 #include "shared/lammps_runs.h"
 #include "shared/length.h"
 #include "shared/results.h"
@@ -52,8 +53,8 @@ static void compare_configurations(void) {
 }
 
 static const char mixture[] =
-    "{\"seed\": 5, \"box\": [4.5, 4.5, 4.5], \"time_step\": 0.01, \"precision\": \"double\",\n"
-    "\"particles\": {\"types\": {\"A\": 120, \"B\": 150}, \"mass\": {\"A\": 1, \"B\": 2}},\n"
+    "{\"seed\": 5, \"box\": [4.1, 4.1, 4.1], \"time_step\": 0.01, \"precision\": \"double\",\n"
+    "\"particles\": {\"types\": {\"A\": 90, \"B\": 115}, \"mass\": {\"A\": 1, \"B\": 2}},\n"
     "\"conservative\": {\"A-A\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
     "  \"A-B\": {\"law\": \"soft-repulsion\", \"a\": 35},\n"
     "  \"B-B\": {\"law\": \"soft-repulsion\", \"a\": 20, \"cutoff\": 1.1}},\n"
@@ -133,10 +134,91 @@ static void test_density_follows_the_pressure(void **state) {
     free(readme);
 }
 
+// By `measure` ------------------------------------------------------------------------------------
+
+static void skip_without(const char *command) {
+    if (system(command) == 0)
+        return;
+    print_message("not there, and not run: %s\n", command);
+    skip();
+}
+
+static void export_in_nm(struct temporary_folder *folder, const char *scene, const char *from,
+                         const char *to, const char *engine) {
+    small_inputs_write(folder, "scene.json", scene, "\"precision\": \"double\",",
+                       "\"units\": {\"length\": 0.5, \"temperature\": 300, \"mass\": 5e-26},");
+    small_inputs_change(folder, "scene.json", from, to);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", engine, "-o", engine);
+    run_program_assert_code(&result, 0);
+}
+
+/// Of a hundred bins of λ = 0.5 nm, by their volumes.
+static void compare_measured(const char *name, double bound) {
+    char path[64], line[512];
+    double squares = 0, shells = 0;
+    snprintf(path, sizeof path, "out/%s", name);
+    FILE *ours = fopen(path, "r");
+    snprintf(path, sizeof path, "measured/%s", name);
+    FILE *theirs = fopen(path, "r");
+    assert_true(ours && theirs);
+    while (fgets(line, sizeof line, ours)) {
+        double r, g, their_r, their_g;
+        if (sscanf(line, "%lf %lf", &r, &g) != 2)
+            continue;
+        do
+            assert_non_null(fgets(line, sizeof line, theirs));
+        while (sscanf(line, "%lf %lf", &their_r, &their_g) != 2);
+        assert_true(fabs(their_r - 0.5 * r) < 1e-6);
+        squares += r * r * (g - their_g) * (g - their_g);
+        shells += r * r;
+    }
+    fclose(ours);
+    fclose(theirs);
+    print_message("%s: rms of g - ours: %.4f\n", name, sqrt(squares / shells));
+    assert_true(sqrt(squares / shells) < bound);
+}
+
+/// Of a hundred frames; without the pairs g is 0.3 apart.
+static void test_mixture_of_openmm_is_ours(void **state) {
+    skip_without("/usr/bin/python3 -c 'import openmm' 2>/dev/null");
+    export_in_nm(*state, mixture, "\"seed\": 5", "\"seed\": 6", "openmm");
+    if (system("cd openmm && PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 run.py 600 >run.out 2>&1"))
+        fail_msg("OpenMM failed: %s", temporary_folder_read("openmm/run.out"));
+    RUN_PROGRAM(&result, "measure", "openmm/trajectory.xyz", "--temperature", "300", "--range", "1",
+                "--bins", "100", "-o", "measured");
+    run_program_assert_code(&result, 0);
+    compare_measured("rdf_A-A.tsv", 0.06);
+    compare_measured("rdf_A-B.tsv", 0.06);
+    compare_measured("rdf_B-B.tsv", 0.06);
+}
+
+/// Debian's GROMACS has no tables of pairs, which are next to nothing here.
+static void test_chains_of_gromacs_are_ours(void **state) {
+    static const char command[] =
+        "cd gromacs && sed 's/ A 0.0 1.0$/ A 0.0 0.0/' topol.top >once.top && (grep -v "
+        "'cutoff-scheme\\|vdwtype\\|energygrp\\|nsteps\\|nstlist\\|rlist\\|rcoulomb\\|rvdw' "
+        "grompp.mdp && "
+        "printf 'rcoulomb = 0.5\\nrvdw = 0.5\\nnsteps = 40000\\n') >once.mdp && (gmx grompp -f "
+        "once.mdp -p once.top -n index.ndx -maxwarn 9 && gmx mdrun -nt 1) >gmx.out 2>&1";
+    skip_without("command -v gmx >/dev/null");
+    export_in_nm(*state, chains, "\"a\": 20", "\"a\": 1e-6", "gromacs");
+    if (system(command) != 0)
+        fail_msg("GROMACS failed: %s", temporary_folder_read("gromacs/gmx.out"));
+    RUN_PROGRAM(&result, "measure", "gromacs/traj_comp.xtc", "-s", "gromacs/conf.gro",
+                "--temperature", "300", "--molecules", "out/used.json", "--range", "1", "--bins",
+                "100", "-o", "measured");
+    run_program_assert_code(&result, 0);
+    compare_measured("rdf.tsv", 0.03);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {TEST(test_mixture_is_ours), TEST(test_chains_are_ours),
-                                       TEST(test_density_follows_the_pressure)};
+                                       TEST(test_density_follows_the_pressure),
+                                       TEST(test_mixture_of_openmm_is_ours),
+                                       TEST(test_chains_of_gromacs_are_ours)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
