@@ -74,8 +74,10 @@ void mf_export_checks_pressure(const struct export_job *job, const char *command
     print_density(job, 1, stream);
     fprintf(stream, ", and so should a run at that pressure.\n");
     if (!(kappa > 0)) {
-        fprintf(stream, "How the density follows another one is not known: of a simulation "
-                        "\"kirkwood_buff\": {} tells it.\n");
+        fprintf(stream, "How the density follows another one is not known%s.\n",
+                model->types == 1 && model->molecules == NULL
+                    ? "; \"kirkwood_buff\": {} of a simulation measures it"
+                    : "");
         return;
     }
     fprintf(stream,

@@ -342,6 +342,7 @@ static void explain(const struct export_job *job, FILE *stream) {
     fprintf(stream, "GROMACS has no DPD%s: its integrator sd is a bath of each particle.\n%s\n",
             export_model_has_friction(job->model) ? " and so no omega" : "",
             mf_export_dynamics_kept(job));
+    fprintf(stream, "\n");
     mf_export_checks_rdf(job, "traj_comp.xtc -s conf.gro", stream);
     mf_export_checks_pressure(
         job,

@@ -379,11 +379,23 @@ static void advise(const struct export_job *job, const char *prefix, FILE *strea
                 prefix);
 }
 
-static void explain(const struct export_job *job, FILE *stream) {
+/// The columns of rdf.dat, in their order.
+static void explain_columns(const struct export_job *job, FILE *stream) {
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    fprintf(stream, "in.mesofit leaves LAMMPS's own g(r) in rdf.dat, on the bins of the result: "
+                    "row, r, g and coordination number");
+    for (int pair = 0; job->grids.pairs > 1 && pair < job->grids.pairs; pair++) {
+        mf_export_model_pair(job->model, pair, type, name);
+        fprintf(stream, "%s %s", pair ? "," : " of", name);
+    }
     fprintf(stream,
-            "in.mesofit leaves LAMMPS's own g(r) in rdf.dat (bins of the result; of mixtures a "
-            "column g and a\ncoordination number for each pair type), temperature, pressure, "
-            "energy and density in thermo.dat.\n\n");
+            ".\nthermo.dat has temperature, pressure, energy and density of beads (1/%s^%d).\n\n",
+            job->units.length_name, job->model->setup.box.dimensions);
+}
+
+static void explain(const struct export_job *job, FILE *stream) {
+    explain_columns(job, stream);
     mf_export_checks_pressure(
         job, "    lmp -in in.mesofit -var pressure 1 -var equilibration 20000 -var steps 50000\n",
         stream);
