@@ -3,6 +3,35 @@
 
 #include <math.h>
 
+void mf_export_checks_tables(const struct export_job *job, FILE *stream) {
+    const struct export_error *error = &job->grids.error;
+    const struct export_units *units = &job->units;
+    fprintf(
+        stream,
+        "Tables of %zu rows, read by %s as it reads them (%s), are within %.2g k_B T of the\n"
+        "potential and within %.2g of its largest force, %.4g %s/%s, for all r from %.4g %s on.\n",
+        job->grids.grid[0][0].rows, job->engine->title, job->engine->interpolation->summary,
+        error->phi, error->force, export_units_force(units) * error->largest_force,
+        units->energy_name, units->length_name, units->length * error->from, units->length_name);
+    if (job->bonded.tables > 0)
+        fprintf(stream,
+                "%d of the laws of bonds, angles and dihedrals are tables of %zu rows, too. Linear "
+                "between the rows they are\nwithin %.2g k_B T and %.2g of the largest slope.\n",
+                job->bonded.tables, job->bonded.rows, job->bonded.energy_error,
+                job->bonded.slope_error);
+    if (job->densities.terms > 0)
+        fprintf(
+            stream,
+            "Of the tables of \"many_body\" what %s reads between the rows is within %.2g k_B T "
+            "of f and within %.2g\nof its largest slope at densities that the start has, from a "
+            "500th of the last density said above on.\n",
+            job->engine->title, job->densities.error.phi, job->densities.error.force);
+    if (job->grids.curves > 1)
+        fprintf(stream, "\n_lower and _upper are the potential minus and plus one standard error "
+                        "at each r. Errors at\ndifferent r are correlated; the two are a band, not "
+                        "two likely potentials.\n");
+}
+
 void mf_export_checks_rdf(const struct export_job *job, const char *files, FILE *stream) {
     const struct export_model *model = job->model;
     fprintf(stream,

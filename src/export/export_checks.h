@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What the README says of checks of a run: g(r) by `measure`, and the density at constant
-/// pressure, which is to be expected by the pressure and the compressibility of the result.
+/// @file What the README says of the tables, and of checks of a run: g(r) by `measure`, and the
+/// density at constant pressure, which is to be expected by the pressure and the compressibility of
+/// the result.
 #pragma once
 
 #include "export/export_engine.h"
+
+/// How wrong the tables are.
+void mf_export_checks_tables(const struct export_job *job, FILE *stream);
 
 /// @param[in] files  arguments of `measure`: the trajectory of the run, and what goes with it
 void mf_export_checks_rdf(const struct export_job *job, const char *files, FILE *stream);

@@ -170,7 +170,7 @@ const struct export_engine mf_export_openmm = {
     .commands = "    python3 run.py\n    python3 run.py 100000   # steps that are measured\n",
     .verified = "Such folders, also of molecules, were run with OpenMM 7.7 and its Langevin bath; "
                 "DPDIntegrator "
-                "is as in its source, and was not run.",
+                "is called as its manual and source have it, and was not run.",
     .max_types = COMPOSITION_MAX_TYPES,
     .molecules = true,
     .has_law = has_law,

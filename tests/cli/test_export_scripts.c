@@ -236,6 +236,56 @@ static void test_openmm_has_our_molecules(void **state) {
     assert_true(fabs(temperature - 300) < (length_is_long() ? 12 : 42));
 }
 
+// Friction ----------------------------------------------------------------------------------------
+
+/// Beads of two masses.
+static const char rubbing[] =
+    "{\"seed\": 5, \"units\": \"nm-ps\", \"box\": [2, 2, 2], \"time_step\": 0.005, "
+    "\"temperature\": 300,\n"
+    "\"particles\": {\"types\": {\"A\": 30, \"B\": 20}, \"mass\": {\"A\": 18, \"B\": 40}},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 50, \"cutoff\": 0.6},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 20, \"cutoff\": 0.5},\n"
+    "\"snapshots\": {\"every\": 100, \"formats\": [\"json\"]},\n"
+    "\"measure\": {\"equilibration\": 20, \"samples\": 2, \"every\": 10}}\n";
+
+/// A pair's velocity falls by exp(−γ w² Δt/m_r), m_r its reduced mass and γ = σ², and DPDIntegrator
+/// lets it fall by exp(−2 friction w² Δt).
+static void test_openmm_is_told_our_friction(void **state) {
+    static struct run_program_result result;
+    static const double mass[] = {18, 40};
+    char command[1024];
+    skip_without("openmm");
+    small_inputs_write(*state, "scene.json", rubbing, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "openmm", "-o", "openmm");
+    run_program_assert_code(&result, 0);
+    snprintf(command, sizeof command,
+             "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 %s/tests/shared/engines/openmm_dpd.py "
+             "openmm >dpd.txt",
+             run_program_sources());
+    assert_int_equal(system(command), 0);
+    FILE *stream = fopen("dpd.txt", "r");
+    double temperature, step;
+    assert_non_null(stream);
+    for (int k = 0; k < 3; k++) {
+        int a, b;
+        double friction, cutoff;
+        assert_int_equal(fscanf(stream, "%d %d %lf %lf", &a, &b, &friction, &cutoff), 4);
+        print_message("%d %d: %g\n", a, b, friction);
+        assert_true(fabs(2 * friction / (20 * 20 * (1 / mass[a] + 1 / mass[b])) - 1) < 1e-6);
+        assert_true(fabs(cutoff - 0.5) < 1e-6);
+    }
+    assert_int_equal(fscanf(stream, "%lf %lf", &temperature, &step), 2);
+    assert_true(fabs(temperature - 300) < 1e-9 && step > 0 && step < 0.0051);
+    for (int k = 0; k < 50; k++) {
+        int type;
+        assert_int_equal(fscanf(stream, "%d", &type), 1);
+        assert_int_equal(type, k >= 30);
+    }
+    fclose(stream);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
@@ -244,6 +294,7 @@ int main(void) {
         TEST(test_openmm_has_those_of_our_tables),
         TEST(test_scripts_of_hoomd_and_espresso_have_those_of_our_laws),
         TEST(test_openmm_has_our_molecules),
+        TEST(test_openmm_is_told_our_friction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
