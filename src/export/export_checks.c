@@ -103,16 +103,21 @@ void mf_export_checks_pressure(const struct export_job *job, const char *command
     print_density(job, 1, stream);
     fprintf(stream, ", and so should a run at that pressure.\n");
     if (!(kappa > 0)) {
-        fprintf(stream, "How the density follows another one is not known%s.\n",
+        fprintf(stream, "How the density follows another one is not known%s.\n\n",
                 model->types == 1 && model->molecules == NULL
                     ? "; \"kirkwood_buff\": {} of a simulation measures it"
                     : "");
         return;
     }
     fprintf(stream,
-            "At another one, P, the density follows the compressibility, rho k_B T kappa = %.3g "
-            "of the result:\nit changes by kappa (P - %.5g), kappa = %.3g per %s.\n",
-            model->compressibility.value, pressure, kappa, units->pressure_name);
+            "At another one, P, the density is higher by the share kappa (P - %.5g), kappa = %.3g "
+            "per %s: "
+            "rho k_B T "
+            "kappa = %.3g,\n%s.\n",
+            pressure, kappa, units->pressure_name, model->compressibility.value,
+            model->fit ? "by g(r) up to the range of the target, which is rough"
+                       : "by the longest waves of S(q)");
     if (units->system != EXPORT_REDUCED)
         print_expected(job, kappa * (mf_export_checks_usual_pressure(job) - pressure), stream);
+    fprintf(stream, "\n");
 }

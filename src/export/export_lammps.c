@@ -399,7 +399,6 @@ static void explain(const struct export_job *job, FILE *stream) {
     mf_export_checks_pressure(
         job, "    lmp -in in.mesofit -var pressure 1 -var equilibration 20000 -var steps 50000\n",
         stream);
-    fprintf(stream, "\n");
     fprintf(stream, "-var friction langevin%s runs in every LAMMPS: a bath for each particle. %s\n",
             dpd_runs(job) ? "" : ", the default,", mf_export_dynamics_kept(job));
     if (mf_export_is_power(job))

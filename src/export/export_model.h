@@ -30,6 +30,7 @@ struct export_model {
     const struct table *own_omega;     ///< all friction of the result: that of the setup is
     struct pair_memory_law own_memory; ///< what other engines could have (export_friction.h)
     const struct molecules *molecules; ///< of the scene, or NULL
+    bool fit;                          ///< the folder is of a fit, not of a simulation
     bool remembers;                    ///< friction has memory: all of it is left out
     bool partial;    ///< the engine of the fit may have known forces beside the potential
     bool thermostat; ///< omega was chosen to hold the temperature, and is no result
