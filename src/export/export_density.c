@@ -6,150 +6,196 @@
 
 #include <math.h>
 
-/// Rows before ρ = 0 and after the largest density: what is wrong at an end is wrong by 0.27 of it
-/// at the next row.
-enum { MARGIN = 32 };
-
 const struct many_body *mf_export_densities_of(const struct export_model *model) {
     return mf_many_body_find(model->setup.interaction, model->setup.interactions);
 }
 
-static enum status check_weights(const struct export_model *model) {
-    const struct many_body *law = mf_export_densities_of(model);
-    for (int t = 0; t < law->terms; t++) {
-        const struct curve_family *family = model->scene.many_body.weight[t].family;
-        if (family != &mf_weight_sanyal_shell)
-            return mf_status_fail(
-                STATUS_BAD_INPUT,
-                "%s: cannot be exported: many_body.%s: LAMMPS's local/density has "
-                "the weight \"%s\" alone, not \"%s\": simulate or fit with that",
-                model->folder, law->term[t].name, mf_weight_sanyal_shell.name, family->name);
-    }
-    return STATUS_OK;
+/// Value and slope of what is tabulated.
+typedef void curve_value(const struct many_body_term *term, double x, double *value, double *slope);
+
+static void energy_at(const struct many_body_term *term, double density, double *value,
+                      double *slope) {
+    *value = mf_density_energy_value(&term->energy, density, slope);
 }
 
-/// f, and below ρ = 0, where no bead is, the parabola that f has there: a spline follows that.
-static double value_of(const struct density_energy *energy, double density, double spacing) {
-    double slope, next;
-    if (density >= 0)
-        return mf_density_energy_value(energy, density, &slope);
-    const double value = mf_density_energy_value(energy, 0, &slope);
-    mf_density_energy_value(energy, spacing, &next);
-    return value + density * (slope + 0.5 * density * (next - slope) / spacing);
+static void weight_at(const struct many_body_term *term, double r, double *value, double *slope) {
+    mf_weight_evaluate(&term->weight, r, value, slope);
 }
 
-/// Second derivatives of the cubic spline through the rows whose slopes at both ends are 0.
-static enum status clamp(struct export_grid *grid) {
+/// Slopes as LAMMPS takes them from the values: of four rows about each, of two at the ends.
+static void find_slopes(struct export_grid *grid) {
     const size_t n = grid->rows;
     const double h = (grid->last - grid->first) / (double)(n - 1);
     const double *f = grid->phi;
-    OWNED double *upper = NULL;
-    TRY_ARRAY(upper, n);
-    for (size_t k = 0; k < n; k++) {
-        const double rise = k + 1 < n ? f[k + 1] - f[k] : 0, before = k > 0 ? f[k] - f[k - 1] : 0;
-        const double pivot = k == 0 ? 2 : k + 1 == n ? 2 - upper[k - 1] : 4 - upper[k - 1];
-        upper[k] = 1 / pivot;
-        grid->second[k] =
-            (6 * (rise - before) / (h * h) - (k > 0 ? grid->second[k - 1] : 0)) / pivot;
+    for (size_t k = 2; k + 2 < n; k++)
+        grid->force[k] = -(f[k - 2] - f[k + 2] + 8 * (f[k + 1] - f[k - 1])) / (12 * h);
+    grid->force[0] = (f[0] - f[1]) / h;
+    grid->force[1] = (f[0] - f[2]) / (2 * h);
+    grid->force[n - 2] = (f[n - 3] - f[n - 1]) / (2 * h);
+    grid->force[n - 1] = (f[n - 2] - f[n - 1]) / h;
+}
+
+/// Rows from 0 on of which the last BEYOND are behind `end`, where the slopes are those of two
+/// rows.
+/// @param[in] stops  the curve does at `end`: what is behind goes on as its parabola there
+static enum status make_grid(struct export_grid *grid, const struct many_body_term *term,
+                             curve_value *curve, double end, bool stops, size_t rows) {
+    enum { BEYOND = 2 };
+    const double h = end / (double)(rows - 1 - BEYOND);
+    mf_export_grid_clear(grid);
+    *grid = (struct export_grid){.rows = rows, .last = h * (double)(rows - 1)};
+    TRY_ARRAY(grid->r, rows);
+    TRY_ARRAY(grid->phi, rows);
+    TRY_ARRAY(grid->force, rows);
+    for (size_t k = 0; k < rows; k++) {
+        double slope;
+        double *f = grid->phi + k;
+        grid->r[k] = h * (double)k;
+        if (stops && k + BEYOND >= rows)
+            *f = 3 * f[-1] - 3 * f[-2] + f[-3];
+        else
+            curve(term, grid->r[k], f, &slope);
     }
-    for (size_t k = n - 1; k-- > 0;)
-        grid->second[k] -= upper[k] * grid->second[k + 1];
+    find_slopes(grid);
     return STATUS_OK;
 }
 
-static enum status make_table(struct export_density *table, const struct density_energy *energy,
-                              size_t rows) {
-    struct export_grid *grid = &table->grid;
-    const double spacing = table->high / (double)(rows - 1 - 2 * MARGIN);
-    mf_export_grid_clear(grid);
-    *grid = (struct export_grid){
-        .rows = rows, .first = -MARGIN * spacing, .last = table->high + MARGIN * spacing};
-    TRY_ARRAY(grid->r, rows);
-    TRY_ARRAY(grid->phi, rows);
-    TRY_ARRAY(grid->second, rows);
-    for (size_t k = 0; k < rows; k++) {
-        grid->r[k] = grid->first + spacing * (double)k;
-        grid->phi[k] = value_of(energy, grid->r[k], spacing);
-    }
-    return clamp(grid);
-}
-
-/// What LAMMPS reads of a table beside f, as struct export_densities has it.
-/// @param[in] densest  of the configuration
-static struct export_error find_error(const struct export_density *table,
-                                      const struct density_energy *energy, double densest,
-                                      double temperature) {
+/// What LAMMPS reads of a table between two places beside its curve: the value, and the slope over
+/// the largest one up to `usual`.
+static struct export_error find_error(const struct export_grid *grid,
+                                      const struct many_body_term *term, curve_value *curve,
+                                      const double between[2], double usual) {
     enum { SAMPLES = 200000 };
-    const double usual = fmax(1, densest);
     struct export_error error = {0};
-    double largest = 0, largest_of_all = 0;
+    double largest_of_all = 0;
     for (int k = 0; k < SAMPLES; k++) {
-        const double density = table->high * k / SAMPLES;
-        double slope, read, force;
-        const double value = mf_density_energy_value(energy, density, &slope);
-        mf_export_grid_spline.value(&table->grid, density, &read, &force);
-        error.phi = fmax(error.phi, fabs(read - value) / temperature);
+        const double x = between[0] + (between[1] - between[0]) * k / SAMPLES;
+        double value, slope, read, force;
+        curve(term, x, &value, &slope);
+        mf_export_grid_hermite.value(grid, x, &read, &force);
+        error.phi = fmax(error.phi, fabs(read - value));
         error.force = fmax(error.force, fabs(force + slope));
         largest_of_all = fmax(largest_of_all, fabs(slope));
-        if (density <= usual)
-            largest = fmax(largest, fabs(slope));
+        if (x <= usual)
+            error.largest_force = fmax(error.largest_force, fabs(slope));
     }
-    error.largest_force = largest > 0 ? largest : largest_of_all;
+    if (!(error.largest_force > 0))
+        error.largest_force = largest_of_all;
     if (error.largest_force > 0)
         error.force /= error.largest_force;
     return error;
 }
 
-/// The table of a term, of as many rows as it needs.
-static enum status find_table(struct export_density *table, const struct export_model *model,
-                              int term, struct export_error *error) {
-    static const size_t rows[] = {1001, 2001, 5001, 10001, 20001, 50001, 100001, 200001};
+static const size_t row_numbers[] = {2001, 5001, 10001, 20001, 50001, 100001, 200001};
+enum { ROW_NUMBERS = sizeof row_numbers / sizeof *row_numbers };
+
+/// The mean of w within its cutoff; negative: w is below 0 somewhere.
+static double mean_weight(const struct export_grid *grid, int dimensions) {
+    const size_t rows = grid->rows - 2; // to the cutoff
+    double sum = 0, norm = 0, largest = 0;
+    for (size_t k = 0; k < rows; k++) {
+        const double shell = dimensions == 2 ? grid->r[k] : grid->r[k] * grid->r[k];
+        largest = fmax(largest, fabs(grid->phi[k]));
+        if (grid->phi[k] < -1e-9 * largest)
+            return -1;
+        sum += grid->phi[k] * shell;
+        norm += shell;
+    }
+    return sum / norm;
+}
+
+/// w, of as many rows as it needs.
+static enum status find_weight(struct export_density *table, const struct export_model *model,
+                               const struct many_body_term *of) {
+    const double cutoff = weight_cutoff(&of->weight);
+    const double between[] = {EXPORT_NEAREST * cutoff, cutoff * (1 - 1e-9)};
+    struct export_error error = {0};
+    for (int n = 0; n < ROW_NUMBERS; n++) {
+        TRY(make_grid(&table->weight, of, weight_at, cutoff, true, row_numbers[n]));
+        error = find_error(&table->weight, of, weight_at, between, cutoff);
+        if (error.force < EXPORT_SLOPE_BOUND &&
+            error.phi < EXPORT_SLOPE_BOUND * error.largest_force * cutoff)
+            break;
+    }
+    if (mean_weight(&table->weight, model->setup.box.dimensions) < 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: cannot be exported: many_body.%s.weight is below 0 somewhere, "
+                              "and densities of LAMMPS begin at 0",
+                              model->folder, of->name);
+    if (!(error.force < EXPORT_SLOPE_BOUND))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: cannot be exported: a table of many_body.%s.weight with %zu "
+                              "rows is still wrong by %.2g of the largest slope: make it smoother",
+                              model->folder, of->name, table->weight.rows, error.force);
+    return STATUS_OK;
+}
+
+/// f up to where it is asked for and to the end of its own table, beyond which both go on straight.
+static enum status find_energy(struct export_density *table, const struct export_model *model,
+                               int term, struct export_error *error) {
     const struct many_body_term *of = &mf_export_densities_of(model)->term[term];
-    table->high = fmax(EXPORT_DENSITY_LEAST, EXPORT_DENSITY_ROOM * model->densest[term]);
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        TRY(make_table(table, &of->energy, rows[k]));
-        *error = find_error(table, &of->energy, model->densest[term], model->setup.temperature);
-        if (error->phi < EXPORT_PHI_BOUND && error->force < EXPORT_FORCE_BOUND)
+    const double temperature = model->setup.temperature, densest = model->densest[term];
+    const double mean = mean_weight(&table->weight, model->setup.box.dimensions);
+    table->high = fmax(EXPORT_DENSITY_LEAST * mean, EXPORT_DENSITY_ROOM * densest);
+    if (of->energy.tabulated)
+        table->high = fmax(table->high, of->energy.high);
+    const double between[] = {EXPORT_DENSITY_FIRST * table->high, table->high};
+    for (int n = 0; n < ROW_NUMBERS; n++) {
+        TRY(make_grid(&table->energy, of, energy_at, table->high, false, row_numbers[n]));
+        *error = find_error(&table->energy, of, energy_at, between, fmax(mean, densest));
+        error->phi /= temperature;
+        if (error->phi < EXPORT_PHI_BOUND && error->force < EXPORT_SLOPE_BOUND)
             return STATUS_OK;
     }
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: cannot be exported: a table of many_body.%s.energy with %zu rows is "
         "still wrong by %.2g k_B T and %.2g of the largest slope: make it smoother",
-        model->folder, of->name, table->grid.rows, error->phi, error->force);
+        model->folder, of->name, table->energy.rows, error->phi, error->force);
 }
 
 enum status mf_export_densities_make(struct export_densities *densities,
                                      const struct export_model *model) {
     const struct many_body *law = mf_export_densities_of(model);
-    struct export_error error;
+    struct export_error error = {0};
     *densities = (struct export_densities){.terms = law ? law->terms : 0};
     if (law == NULL)
         return STATUS_OK;
-    TRY(check_weights(model));
     for (int t = 0; t < law->terms; t++) {
-        TRY(find_table(&densities->table[t], model, t, &error));
+        TRY(find_weight(&densities->table[t], model, &law->term[t]));
+        TRY(find_energy(&densities->table[t], model, t, &error));
         densities->error.phi = fmax(densities->error.phi, error.phi);
         densities->error.force = fmax(densities->error.force, error.force);
     }
     return STATUS_OK;
 }
 
+double mf_export_density_unit(const struct export_model *model, int term, double length) {
+    const struct curve *weight = &model->scene.many_body.weight[term];
+    return mf_weight_is_normalised(weight) ? pow(length, -model->setup.box.dimensions) : 1;
+}
+
 void mf_export_densities_print(const struct export_densities *densities,
-                               const struct export_model *model, const char *prefix, FILE *stream) {
+                               const struct export_model *model, const struct export_units *units,
+                               const char *prefix, FILE *stream) {
     for (int t = 0; t < densities->terms; t++) {
         const struct export_density *table = &densities->table[t];
-        fprintf(stream,
-                "%smany_body  f of %s in %zu rows for rho from 0 to %.4g; the start has %.3g at "
-                "most, and beyond %.4g LAMMPS takes the slope to be 0\n",
-                prefix, mf_export_densities_of(model)->term[t].name, table->grid.rows, table->high,
-                model->densest[t], table->grid.last);
+        const double unit = mf_export_density_unit(model, t, units->length);
+        fprintf(stream, "%smany_body  f of %s in %zu rows for rho from 0 to %.4g", prefix,
+                mf_export_densities_of(model)->term[t].name, table->energy.rows,
+                table->high * unit);
+        if (mf_weight_is_normalised(&model->scene.many_body.weight[t]))
+            fprintf(stream, " 1/%s^%d", units->length_name, model->setup.box.dimensions);
+        fprintf(stream, ", beyond which it goes on straight; the start has %.3g at most\n",
+                model->densest[t] * unit);
     }
 }
 
 void mf_export_densities_clear(struct export_densities *densities) {
-    for (int t = 0; t < densities->terms; t++)
-        mf_export_grid_clear(&densities->table[t].grid);
+    for (int t = 0; t < densities->terms; t++) {
+        mf_export_grid_clear(&densities->table[t].energy);
+        mf_export_grid_clear(&densities->table[t].weight);
+    }
     *densities = (struct export_densities){0};
 }
 

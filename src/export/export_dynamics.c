@@ -221,7 +221,7 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
     fprintf(stream, "%sstructure  phi as tables: %s\n", prefix,
             job->model->partial ? "alone, without the forces that the engine of the fit knew"
                                 : "g(r), energy and pressure are those of the result");
-    mf_export_densities_print(&job->densities, job->model, prefix, stream);
+    mf_export_densities_print(&job->densities, job->model, &job->units, prefix, stream);
     print_friction(job, prefix, stream);
     if (job->measured)
         print_measured(job, prefix, stream);

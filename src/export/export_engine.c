@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "export/export_engine.h"
+#include "export/export_checks.h"
 
 #include "base/memory.h"
 #include "base/nearest.h"
@@ -222,7 +222,6 @@ static const char *say_known(const struct export_model *model) {
 
 static void print_readme(const struct export_job *job, FILE *stream) {
     const struct export_model *model = job->model;
-    const struct export_error *error = &job->grids.error;
     const struct export_units *units = &job->units;
     if (job->engine->versions)
         fprintf(stream, "%s\n\n", job->engine->versions);
@@ -240,29 +239,7 @@ static void print_readme(const struct export_job *job, FILE *stream) {
             units->length_name, units->time_name, units->energy_name, units->temperature_name,
             units->pressure_name, units->time * job->time_step, units->time_name,
             units->time * model->setup.time_step, units->time_name, job->why_step);
-    fprintf(
-        stream,
-        "Tables of %zu rows, read by %s as it reads them (%s), are within %.2g k_B T of the\n"
-        "potential and within %.2g of its largest force, %.4g %s/%s, for all r from %.4g %s on.\n",
-        job->grids.grid[0][0].rows, job->engine->title, job->engine->interpolation->summary,
-        error->phi, error->force, export_units_force(units) * error->largest_force,
-        units->energy_name, units->length_name, units->length * error->from, units->length_name);
-    if (job->bonded.tables > 0)
-        fprintf(stream,
-                "%d of the laws of bonds, angles and dihedrals are tables of %zu rows, too. Linear "
-                "between the rows they are\nwithin %.2g k_B T and %.2g of the largest slope.\n",
-                job->bonded.tables, job->bonded.rows, job->bonded.energy_error,
-                job->bonded.slope_error);
-    if (job->densities.terms > 0)
-        fprintf(stream,
-                "Of the tables of \"many_body\" the spline that %s lays through the rows is within "
-                "%.2g k_B T of f and within %.2g\nof its largest slope at densities that the start "
-                "has, for all densities up to the ends said above.\n",
-                job->engine->title, job->densities.error.phi, job->densities.error.force);
-    if (job->grids.curves > 1)
-        fprintf(stream, "\n_lower and _upper are the potential minus and plus one standard error "
-                        "at each r. Errors at\ndifferent r are correlated; the two are a band, not "
-                        "two likely potentials.\n");
+    mf_export_checks_tables(job, stream);
     const bool measured = isfinite(model->temperature.value) || isfinite(model->pressure.value);
     fprintf(stream, measured ? "\nWhat mesofit itself measured of the result:\n\n"
                              : "\nThe result was not simulated by mesofit to its end: nothing was "

@@ -2,7 +2,7 @@
 //
 // GROMACS up to 2019: tables of energy groups in the group scheme, cubics between rows of value and
 // −derivative. The potential stands in the column of the repulsion, whose C12 is 1 for all pairs.
-#include "export/export_engine.h"
+#include "export/export_checks.h"
 #include "topologies/gromacs_functions.h"
 
 #include <math.h>
@@ -305,6 +305,18 @@ static void print_settings(const struct export_job *job, FILE *stream) {
     fprintf(stream, "\n");
 }
 
+/// The same at constant pressure: the mean density is right, its fluctuations are too small.
+static void print_pressure(const struct export_job *job, FILE *stream) {
+    static const double steps = 1000, water = 4.5e-5; // 1/bar, where the result does not say
+    const double kappa = mf_export_checks_compressibility(job);
+    print_settings(job, stream);
+    fprintf(stream,
+            "pcoupl = Berendsen\nref-p = %g ; bar: the pressure that is held\ncompressibility = "
+            "%.3g ; 1/bar\ntau-p = %.6g\n",
+            mf_export_checks_usual_pressure(job), kappa > 0 ? kappa : water,
+            steps * job->time_step * job->units.time);
+}
+
 static enum status write(const struct export_job *job) {
     TRY(write_tables(job));
     if (job->model->molecules) {
@@ -313,7 +325,8 @@ static enum status write(const struct export_job *job) {
         TRY(mf_export_file(job, "conf.gro", print_conf));
         TRY(mf_export_file(job, "topol.top", print_topology));
     }
-    return mf_export_file(job, "grompp.mdp", print_settings);
+    TRY(mf_export_file(job, "grompp.mdp", print_settings));
+    return mf_export_file(job, "pressure.mdp", print_pressure);
 }
 
 /// A table of a bond, angle or dihedral is called by a letter and a number.
@@ -329,13 +342,23 @@ static void explain(const struct export_job *job, FILE *stream) {
     fprintf(stream, "GROMACS has no DPD%s: its integrator sd is a bath of each particle.\n%s\n",
             export_model_has_friction(job->model) ? " and so no omega" : "",
             mf_export_dynamics_kept(job));
+    fprintf(stream, "\n");
+    mf_export_checks_rdf(job, "traj_comp.xtc -s conf.gro", stream);
+    mf_export_checks_pressure(
+        job,
+        job->model->molecules
+            ? "    gmx grompp -f pressure.mdp -n index.ndx   # ref-p in it is the pressure; then "
+              "mdrun as above\n"
+            : "    gmx grompp -f pressure.mdp   # ref-p in it is the pressure; then mdrun as "
+              "above\n",
+        stream);
 }
 
 const struct export_engine mf_export_gromacs = {
     .name = "gromacs",
     .title = "GROMACS",
-    .summary = "grompp.mdp, conf.gro, topol.top, table_A_B.xvg, for versions up to 2019; nm, ps, "
-               "kJ/mol",
+    .summary = "grompp.mdp, pressure.mdp, conf.gro, topol.top, table_A_B.xvg, for versions up to "
+               "2019; nm, ps, kJ/mol",
     .system = EXPORT_NANOMETRES,
     .physical = true,
     .interpolation = &mf_export_grid_hermite,

@@ -2,7 +2,9 @@
 //
 // LAMMPS: pair_style table linear reads the rows as they are if its N is that of the file and the
 // rows are RSQ. Friction by dpd/tstat and dpd/ext/tstat, or by mesofit/table (share/lammps).
+#include "export/export_lammps_density.h"
 #include "export/export_lammps_molecules.h"
+#include "export/export_checks.h"
 #include "report/program.h"
 
 #include <ctype.h>
@@ -252,7 +254,7 @@ static void print_measurements(const struct export_job *job, FILE *stream) {
                     "fix rdf all ave/time ${every} ${samples} $(v_samples*v_every) c_rdf[*] file "
                     "rdf.dat mode vector\n"
                     "fix means all ave/time ${every} 1 ${every} c_thermo_temp c_thermo_press "
-                    "c_thermo_pe file thermo.dat\n"
+                    "c_thermo_pe v_density file thermo.dat\n"
                     "if \"${dump} > 0\" then &\n  \"dump beads all custom ${dump} dump.lammpstrj "
                     "id type x y z vx vy vz\"\n");
 }
@@ -301,13 +303,16 @@ static void print_place(const struct export_job *job, FILE *stream) {
 }
 
 static void print_input(const struct export_job *job, FILE *stream) {
+    static const double steps_of_barostat = 1000;
     const struct export_model *model = job->model;
+    const double step = job->time_step * job->units.time;
     fprintf(stream,
             "# %s: written by mesofit; see README. Variables: lmp -in in.mesofit -var steps "
             "100000\n\nvariable steps index 10000      # that are measured\nvariable equilibration "
             "index %d\nvariable every index 20         # steps between samples\nvariable dump "
             "index 0           # steps between frames of dump.lammpstrj; 0: none\nvariable "
-            "friction index %s # or another one named in README\nvariable band index \"\"          "
+            "friction index %s # or another one named in README\n# variable pressure: none of its "
+            "own; -var pressure P holds P\nvariable band index \"\"          "
             "# _lower or _upper: exported with --bands\nvariable seed index 12345\n\n",
             model->title[0] ? model->title : "beads", model->equilibrated ? 1000 : 5000,
             dpd_runs(job) ? "dpd" : "langevin");
@@ -317,11 +322,14 @@ static void print_input(const struct export_job *job, FILE *stream) {
     mf_export_lammps_print_system(job, stream);
     print_thermostat(job, stream);
     fprintf(stream,
-            "\nfix move all nve\n%stimestep %.9g\nthermo 1000\n"
-            "thermo_style custom step temp press pe%s\nthermo_modify norm yes\n"
+            "\nif \"$(is_defined(variable,pressure)) == 1\" then &\n  \"fix move all nph iso "
+            "${pressure} ${pressure} %.9g\" &\nelse \"fix move all nve\"\n%stimestep %.9g\n"
+            "variable density equal atoms/vol\nthermo 1000\n"
+            "thermo_style custom step temp press pe v_density%s\nthermo_modify norm yes\n"
             "run ${equilibration}\nreset_timestep 0\n\n",
-            model->setup.box.dimensions == 2 ? "fix flat all enforce2d\n" : "",
-            job->time_step * job->units.time, model->molecules ? " evdwl ebond eangle edihed" : "");
+            steps_of_barostat * step,
+            model->setup.box.dimensions == 2 ? "fix flat all enforce2d\n" : "", step,
+            model->molecules ? " evdwl ebond eangle edihed" : "");
     print_measurements(job, stream);
     fprintf(stream, "run ${steps}\n");
 }
@@ -371,11 +379,26 @@ static void advise(const struct export_job *job, const char *prefix, FILE *strea
                 prefix);
 }
 
-static void explain(const struct export_job *job, FILE *stream) {
+/// The columns of rdf.dat, in their order.
+static void explain_columns(const struct export_job *job, FILE *stream) {
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    int type[2];
+    fprintf(stream, "in.mesofit leaves LAMMPS's own g(r) in rdf.dat, on the bins of the result: "
+                    "row, r, g and coordination number");
+    for (int pair = 0; job->grids.pairs > 1 && pair < job->grids.pairs; pair++) {
+        mf_export_model_pair(job->model, pair, type, name);
+        fprintf(stream, "%s %s", pair ? "," : " of", name);
+    }
     fprintf(stream,
-            "in.mesofit leaves LAMMPS's own g(r) in rdf.dat (bins of the result; of mixtures a "
-            "column g and a\ncoordination number for each pair type), temperature, pressure and "
-            "energy in thermo.dat.\n\n");
+            ".\nthermo.dat has temperature, pressure, energy and density of beads (1/%s^%d).\n\n",
+            job->units.length_name, job->model->setup.box.dimensions);
+}
+
+static void explain(const struct export_job *job, FILE *stream) {
+    explain_columns(job, stream);
+    mf_export_checks_pressure(
+        job, "    lmp -in in.mesofit -var pressure 1 -var equilibration 20000 -var steps 50000\n",
+        stream);
     fprintf(stream, "-var friction langevin%s runs in every LAMMPS: a bath for each particle. %s\n",
             dpd_runs(job) ? "" : ", the default,", mf_export_dynamics_kept(job));
     if (mf_export_is_power(job))

@@ -36,14 +36,3 @@ void mf_export_lammps_print_system(const struct export_job *job, FILE *stream);
 
 /// How far apart beads of one term may be [λ]; 0 without molecules.
 double mf_export_lammps_reach(const struct export_model *model);
-
-/// Whether there are any, so that styles overlay each other.
-bool mf_export_lammps_overlays(const struct export_job *job);
-
-/// "NAME.density" of each, in LAMMPS's format. Fails: IO.
-enum status mf_export_lammps_write_densities(const struct export_job *job) MUST_USE;
-
-/// The end of the command of styles, after those of the pairs, and the commands of coefficients.
-void mf_export_lammps_density_styles(const struct export_job *job, FILE *stream);
-
-void mf_export_lammps_density_coefficients(const struct export_job *job, FILE *stream);

@@ -23,7 +23,6 @@
 /// What is read on the way.
 struct reading {
     struct export_model *model;
-    bool fit;
     int unknown; ///< a sum of scene_unknown
     struct inverse_number number[INVERSE_MAX_NUMBERS];
     double value[INVERSE_MAX_NUMBERS];
@@ -97,11 +96,11 @@ static enum status read_used(struct reading *reading) {
     struct json_object root = mf_json_root(document);
     mf_json_fields(&root, mf_heading_fields, &heading);
     snprintf(model->title, sizeof model->title, "%s", heading.title);
-    reading->fit = mf_json_is_object(&root, "scene");
-    struct json_object scene = reading->fit ? mf_json_child(&root, "scene", true) : root;
-    if (reading->fit) // of a scene that is its own root, mf_scene_read does so
+    reading->model->fit = mf_json_is_object(&root, "scene");
+    struct json_object scene = reading->model->fit ? mf_json_child(&root, "scene", true) : root;
+    if (reading->model->fit) // of a scene that is its own root, mf_scene_read does so
         mf_units_read_document(&root, &scene);
-    const enum status status = reading->fit
+    const enum status status = reading->model->fit
                                    ? read_run(reading, &root, &scene)
                                    : mf_scene_read(&model->scene, &scene, SCENE_FITS_NOTHING, NULL);
     read_time_step(&model->scene.setup, &root);
@@ -128,6 +127,8 @@ static const struct field summary_fields[] = {
     NUMBER("temperature_configurational_error", configurational.error, "T_0"),
     NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
     NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
+    NUMBER("compressibility", compressibility.value, "1"),
+    NUMBER("compressibility_error", compressibility.error, "1"),
     NUMBER("diffusion", diffusion.value, "lambda^2/tau"),
     NUMBER("diffusion_error", diffusion.error, "lambda^2/tau"),
     NUMBER("verification_time_step", verified_step, "tau"),
@@ -166,7 +167,7 @@ static enum status read_summary(struct reading *reading) {
     mf_json_set_units(document, &model->scene.units);
     struct json_object root = mf_json_root(document);
     const char *status = mf_json_choice(&root, "status", NULL, "");
-    if (status && reading->fit && strcmp(status, "converged") != 0 &&
+    if (status && reading->model->fit && strcmp(status, "converged") != 0 &&
         strcmp(status, "finished") != 0)
         snprintf(model->warning, sizeof model->warning,
                  "%.160s: the fit is %.40s; what is exported is its best so far", model->folder,

@@ -30,6 +30,7 @@ struct export_model {
     const struct table *own_omega;     ///< all friction of the result: that of the setup is
     struct pair_memory_law own_memory; ///< what other engines could have (export_friction.h)
     const struct molecules *molecules; ///< of the scene, or NULL
+    bool fit;                          ///< the folder is of a fit, not of a simulation
     bool remembers;                    ///< friction has memory: all of it is left out
     bool partial;    ///< the engine of the fit may have known forces beside the potential
     bool thermostat; ///< omega was chosen to hold the temperature, and is no result
@@ -44,6 +45,7 @@ struct export_model {
     size_t rdf_bins;                     ///< of g(r), equally wide from 0 on
     double rdf_range;                    ///< where they end [λ]
     struct export_number temperature, pressure; ///< of the result
+    struct export_number compressibility;       ///< ρ k_B T κ_T of it, likewise
     struct export_number diffusion;             ///< D of it, if it was measured
     struct export_number configurational;       ///< its configurational temperature
     double verified_step;                       ///< time step of the verification; or NAN [τ]

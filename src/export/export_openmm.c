@@ -3,6 +3,7 @@
 // OpenMM: the natural spline of a Continuous1DFunction, one force for each pair type. Its
 // DPDIntegrator (from 8.3 on) multiplies the velocity of a pair by exp(−2 Δt friction (1 −
 // r/r_c)²): friction is γ over twice the reduced mass, γ/m between beads of one mass.
+#include "export/export_checks.h"
 #include "export/export_script.h"
 #include "export/export_terms.h"
 #include "curves/bonded_table.h"
@@ -47,6 +48,39 @@ static void print_terms(FILE *stream) {
         "        system.addForce(force)\n\n");
 }
 
+/// Frames in extended XYZ, in nm and ps, and lines of energies.
+static void print_run(const struct export_job *job, FILE *stream) {
+    fprintf(stream,
+            "integrator.step(%d) # to equilibrate\n\n\n"
+            "def write_frame(stream, state, time):\n"
+            "    rows = numpy.column_stack((state.getPositions(asNumpy=True)._value,\n"
+            "                               state.getVelocities(asNumpy=True)._value))\n"
+            "    a, b, c = state.getPeriodicBoxVectors(asNumpy=True)._value.diagonal()\n"
+            "    stream.write(f'{len(rows)}\\nLattice=\"{a} 0 0 0 {b} 0 0 0 {c}\" pbc=\"T T T\" '\n"
+            "                 f'Units=nm-ps Time={time:.9g} '\n"
+            "                 'Properties=name:S:1:pos:R:3:velo:R:3:masses:R:1\\n')\n"
+            "    for a, row in zip(types_of, rows):\n"
+            "        stream.write(types[a] + \" %%.8g %%.8g %%.8g %%.6g %%.6g %%.6g %%.9g\\n\"\n"
+            "                     %% (*row, masses[a]))\n\n\n",
+            job->model->equilibrated ? 1000 : 5000);
+    mf_export_script_columns(job, false, stream);
+    fprintf(stream,
+            "frames = open(\"trajectory.xyz\", \"w\")\n"
+            "for block in range(100):\n"
+            "    integrator.step(steps // 100)\n"
+            "    state = context.getState(getPositions=True, getVelocities=True, getEnergy=True)\n"
+            "    step = (block + 1) * (steps // 100)\n"
+            "    write_frame(frames, state, step * time_step)\n"
+            "    print(step, temperature * 2 * state.getKineticEnergy()._value / (3 * len(start) * "
+            "kT),\n"
+            "          state.getPotentialEnergy()._value,\n"
+            "          len(start) / state.getPeriodicBoxVolume()._value)\n"
+            "frames.close()\n"
+            "numpy.savetxt(\"end.txt\", numpy.column_stack((types_of,\n"
+            "    state.getPositions(asNumpy=True)._value, state.getVelocities(asNumpy=True)."
+            "_value)))\n");
+}
+
 static void print(const struct export_job *job, FILE *stream) {
     mf_export_script_head(job, "openmm", stream);
     if (job->model->molecules)
@@ -88,23 +122,16 @@ static void print(const struct export_job *job, FILE *stream) {
         "            integrator.addTypePair(a, b, gamma * (1 / masses[a] + 1 / masses[b]) / 2,\n"
         "                                   friction_cutoff)\n"
         "else:\n"
+        "    if dpd:\n"
+        "        print(\"# a Langevin bath: this OpenMM has no DPDIntegrator\")\n"
         "    integrator = openmm.LangevinMiddleIntegrator(temperature, 1 / slowing, "
         "time_step)\n"
+        "if len(sys.argv) > 2: # constant pressure\n"
+        "    system.addForce(openmm.MonteCarloBarostat(float(sys.argv[2]), temperature))\n"
         "context = openmm.Context(system, integrator)\n"
         "context.setPositions(start[:, 1:4].tolist())\n"
         "context.setVelocities(start[:, 4:7].tolist())\n");
-    mf_export_script_columns(job, false, stream);
-    fprintf(stream,
-            "for block in range(10):\n"
-            "    integrator.step(steps // 10)\n"
-            "    state = context.getState(getEnergy=True)\n"
-            "    kinetic = state.getKineticEnergy()._value\n"
-            "    print((block + 1) * (steps // 10), temperature * 2 * kinetic / (3 * len(start) * "
-            "kT), state.getPotentialEnergy()._value)\n"
-            "state = context.getState(getPositions=True, getVelocities=True)\n"
-            "numpy.savetxt(\"end.txt\", numpy.column_stack((types_of,\n"
-            "    state.getPositions(asNumpy=True)._value, state.getVelocities(asNumpy=True)."
-            "_value)))\n");
+    print_run(job, stream);
 }
 
 static enum status write(const struct export_job *job) {
@@ -120,6 +147,14 @@ static void explain(const struct export_job *job, FILE *stream) {
                              "one runs a Langevin bath",
                              stream);
     mf_export_script_excluded(job, stream);
+    fprintf(stream,
+            "\nrun.py lets the start settle for %d steps, and then prints temperature, energy and "
+            "density a hundred times\nand writes as many frames to trajectory.xyz (nm, ps). "
+            "end.txt has the last one in the columns of start.txt:\ncopied over that, it lets a "
+            "run at constant volume go on.\n\n",
+            job->model->equilibrated ? 1000 : 5000);
+    mf_export_checks_rdf(job, "trajectory.xyz", stream);
+    mf_export_checks_pressure(job, "    python3 run.py 100000 1   # steps, pressure\n", stream);
 }
 
 const struct export_engine mf_export_openmm = {
@@ -132,10 +167,10 @@ const struct export_engine mf_export_openmm = {
     .friction = EXPORT_LINEAR,
     .friction_name = "DPDIntegrator, from version 8.3 on (an older one runs a bath)",
     .bath = "LangevinMiddleIntegrator",
-    .commands = "    python3 run.py\n    python3 run.py 100000   # steps\n",
+    .commands = "    python3 run.py\n    python3 run.py 100000   # steps that are measured\n",
     .verified = "Such folders, also of molecules, were run with OpenMM 7.7 and its Langevin bath; "
                 "DPDIntegrator "
-                "is as in its source, and was not run.",
+                "is called as its manual and source have it, and was not run.",
     .max_types = COMPOSITION_MAX_TYPES,
     .molecules = true,
     .has_law = has_law,

@@ -120,7 +120,10 @@ void mf_export_script_columns(const struct export_job *job, bool pressure, FILE 
     fprintf(stream, "print(\"# step, temperature [%s]", units->temperature_name);
     if (pressure)
         fprintf(stream, ", pressure [%s]", units->pressure_name);
-    fprintf(stream, ", potential energy [%s]\")\n", units->energy_name);
+    fprintf(stream, ", potential energy [%s]", units->energy_name);
+    if (!pressure)
+        fprintf(stream, ", density [1/%s^3]", units->length_name);
+    fprintf(stream, "\")\n");
 }
 
 void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream) {

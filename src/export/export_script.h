@@ -16,8 +16,8 @@ enum status mf_export_script_files(const struct export_job *job, double shift) M
 /// runs, and `slowing`, the time of a bath instead.
 void mf_export_script_head(const struct export_job *job, const char *module, FILE *stream);
 
-/// Print what a line of the script's output has: the temperature and the pressure in the units that
-/// the README has, too, and the potential energy of all beads.
+/// Print what a line of the script's output has: the temperature and, with `pressure`, the pressure
+/// in the units that the README has, too, and the potential energy of all beads; else the density.
 void mf_export_script_columns(const struct export_job *job, bool pressure, FILE *stream);
 
 /// What the README says of the thermostat of such a script.

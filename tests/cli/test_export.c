@@ -267,7 +267,11 @@ static void test_gromacs_reads_the_potential(void **state) {
     run_export("gromacs", "gromacs");
     char *readme = temporary_folder_read("gromacs/README");
     assert_int_equal(strncmp(readme, "GROMACS up to 2019 runs this", 28), 0);
+    assert_contains(readme, "gmx grompp -f pressure.mdp");
     free(readme);
+    char *settings = temporary_folder_read("gromacs/pressure.mdp");
+    assert_contains(settings, "pcoupl = Berendsen\nref-p = 1 ;");
+    free(settings);
     init(&rows);
     FILE *file = open_text("gromacs/table_A_A.xvg");
     char line[256];

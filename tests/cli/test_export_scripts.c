@@ -3,7 +3,6 @@
 // Molecules in engines that a Python script drives: OpenMM (Debian's python3-simtk; skipped where
 // there is none) has our energies and forces, law by law, and our g(r). HOOMD-blue and ESPResSo are
 // not in Debian: models of what their manuals say of each call (tests/shared/engines) have them.
-#include "base/rng.h"
 #include "export/export_units.h"
 #include "shared/exported_molecules.h"
 #include "shared/lammps_runs.h"
@@ -66,21 +65,6 @@ static void make_result(struct temporary_folder *folder, bool with_tables) {
 
 enum { PAIRS, BONDS, ANGLES, DIHEDRALS, FORCES, DIFFERENCES };
 
-/// Our simulation of the exported configuration, of which each coordinate is moved by up to 0.05.
-static void move_beads(struct lammps_runs_ours *ours, uint32_t configuration) {
-    struct simulation_start start = {{0}, {0}};
-    struct rng_sequence random = mf_rng_sequence_begin(7, RNG_PLACEMENT, configuration, 0);
-    for (int d = 0; d < 3; d++) {
-        for (size_t k = 0; k < ours->model.count; k++)
-            ours->model.position[d][k] += 0.1 * (mf_rng_sequence_uniform(&random) - 0.5);
-        start.position[d] = ours->model.position[d];
-        start.velocity[d] = ours->model.velocity[d];
-    }
-    mf_simulation_clear(&ours->simulation);
-    assert_ok(mf_simulation_init(&ours->simulation, &ours->model.setup, &start));
-    assert_ok(mf_simulation_compute_potential(&ours->simulation));
-}
-
 static void write_configuration(const struct lammps_runs_ours *ours,
                                 const struct export_units *units, FILE *stream) {
     const struct particles *particles = &ours->simulation.particles;
@@ -116,7 +100,7 @@ static void compare(const char *engine, int configurations, double difference[DI
     fprintf(stream, "%zu\n", ours.model.count);
     for (int k = 0; k < configurations; k++) {
         write_configuration(&ours, &units, stream);
-        move_beads(&ours, (uint32_t)k);
+        lammps_runs_move(&ours, (uint32_t)k);
     }
     fclose(stream);
     lammps_runs_clear_ours(&ours);
@@ -154,8 +138,11 @@ static void assert_below(const double difference[DIFFERENCES], double energy, do
     assert_true(difference[FORCES] < force);
 }
 
+enum { CONFIGURATIONS = 100 };
+
+/// Models of engines are slow.
 static int configurations(void) {
-    return length_is_long() ? 100 : 2;
+    return length_is_long() ? CONFIGURATIONS : 2;
 }
 
 /// Numbers of the script have 15 digits, and positions of ours 32 bits.
@@ -163,7 +150,7 @@ static void test_openmm_has_the_energies_and_forces_of_our_laws(void **state) {
     double difference[DIFFERENCES];
     skip_without("openmm");
     make_result(*state, false);
-    compare("openmm", configurations(), difference);
+    compare("openmm", CONFIGURATIONS, difference);
     assert_below(difference, 1e-7, 1e-5);
 }
 
@@ -172,7 +159,7 @@ static void test_openmm_has_those_of_our_tables(void **state) {
     double difference[DIFFERENCES];
     skip_without("openmm");
     make_result(*state, true);
-    compare("openmm", configurations(), difference);
+    compare("openmm", CONFIGURATIONS, difference);
     assert_below(difference, 1e-4, 0.02);
 }
 
@@ -249,6 +236,56 @@ static void test_openmm_has_our_molecules(void **state) {
     assert_true(fabs(temperature - 300) < (length_is_long() ? 12 : 42));
 }
 
+// Friction ----------------------------------------------------------------------------------------
+
+/// Beads of two masses.
+static const char rubbing[] =
+    "{\"seed\": 5, \"units\": \"nm-ps\", \"box\": [2, 2, 2], \"time_step\": 0.005, "
+    "\"temperature\": 300,\n"
+    "\"particles\": {\"types\": {\"A\": 30, \"B\": 20}, \"mass\": {\"A\": 18, \"B\": 40}},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 50, \"cutoff\": 0.6},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 20, \"cutoff\": 0.5},\n"
+    "\"snapshots\": {\"every\": 100, \"formats\": [\"json\"]},\n"
+    "\"measure\": {\"equilibration\": 20, \"samples\": 2, \"every\": 10}}\n";
+
+/// A pair's velocity falls by exp(−γ w² Δt/m_r), m_r its reduced mass and γ = σ², and DPDIntegrator
+/// lets it fall by exp(−2 friction w² Δt).
+static void test_openmm_is_told_our_friction(void **state) {
+    static struct run_program_result result;
+    static const double mass[] = {18, 40};
+    char command[1024];
+    skip_without("openmm");
+    small_inputs_write(*state, "scene.json", rubbing, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "openmm", "-o", "openmm");
+    run_program_assert_code(&result, 0);
+    snprintf(command, sizeof command,
+             "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 %s/tests/shared/engines/openmm_dpd.py "
+             "openmm >dpd.txt",
+             run_program_sources());
+    assert_int_equal(system(command), 0);
+    FILE *stream = fopen("dpd.txt", "r");
+    double temperature, step;
+    assert_non_null(stream);
+    for (int k = 0; k < 3; k++) {
+        int a, b;
+        double friction, cutoff;
+        assert_int_equal(fscanf(stream, "%d %d %lf %lf", &a, &b, &friction, &cutoff), 4);
+        print_message("%d %d: %g\n", a, b, friction);
+        assert_true(fabs(2 * friction / (20 * 20 * (1 / mass[a] + 1 / mass[b])) - 1) < 1e-6);
+        assert_true(fabs(cutoff - 0.5) < 1e-6);
+    }
+    assert_int_equal(fscanf(stream, "%lf %lf", &temperature, &step), 2);
+    assert_true(fabs(temperature - 300) < 1e-9 && step > 0 && step < 0.0051);
+    for (int k = 0; k < 50; k++) {
+        int type;
+        assert_int_equal(fscanf(stream, "%d", &type), 1);
+        assert_int_equal(type, k >= 30);
+    }
+    fclose(stream);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
@@ -257,6 +294,7 @@ int main(void) {
         TEST(test_openmm_has_those_of_our_tables),
         TEST(test_scripts_of_hoomd_and_espresso_have_those_of_our_laws),
         TEST(test_openmm_has_our_molecules),
+        TEST(test_openmm_is_told_our_friction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -198,27 +198,29 @@ static void test_one_energy_is_found_for_two_densities(void **state) {
     assert_found("out/many_body_crowd.tsv", true, 0.05);
 }
 
-/// The table that LAMMPS reads has the curve that was found, between ρ of a first and a last row.
+/// The table that LAMMPS reads, behind three comments, types, rows and mass, has the curve that was
+/// found, from ρ = 0 on.
 static void test_the_energy_that_was_found_is_exported(void **state) {
-    enum { MAX_ROWS = 200001 }; // of a table that export writes
+    enum { MAX_ROWS = 200001, COMMENTS = 3 }; // of a table that export writes
     static double f[MAX_ROWS + 1];
-    double first, last, step;
-    size_t rows = 0, header = 0;
+    const double first = 0;
+    double step;
+    size_t rows;
+    char line[256];
     write_fit(*state, "\"precision\": 0.006", "\"precision\": 0.02, \"iterations\": 2");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force", "--quiet");
     RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "model", "--force");
     run_program_assert_code(&result, 0);
-    FILE *file = fopen("model/crowd.density", "r");
+    FILE *file = fopen("model/crowd.eam.fs", "r");
     assert_non_null(file);
-    for (char line[256]; fgets(line, sizeof line, file);) {
-        if (header == 0)
-            header = sscanf(line, "%lf %lf %lf", &first, &last, &step) == 3;
-        else if (rows < MAX_ROWS)
-            rows += sscanf(line, "%lf", &f[rows]) == 1;
-    }
-    fclose(file);
+    for (int k = 0; k < COMMENTS; k++)
+        assert_non_null(fgets(line, sizeof line, file));
+    assert_int_equal(fscanf(file, "1 T1 %zu %lf %*d %*f %*f %*d %*f %*d none", &rows, &step), 2);
     const struct found found = read_found("out/many_body_crowd.tsv");
     assert_in_range(rows, 100, MAX_ROWS);
+    for (size_t k = 0; k < rows; k++)
+        assert_int_equal(fscanf(file, "%lf", &f[k]), 1);
+    fclose(file);
     for (size_t n = 1; n < found.count; n++) {
         const double place = (found.rho[n] - first) / step, before = (found.rho[0] - first) / step;
         const size_t k = (size_t)place, k_before = (size_t)before;

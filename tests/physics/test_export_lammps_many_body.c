@@ -28,68 +28,32 @@ static struct run_program_result result;
 #define WEIGHT(inner, outer)                                                                       \
     "\"weight\": {\"law\": \"sanyal-shell\", \"inner_cutoff\": " #inner ", \"cutoff\": " #outer "}"
 
-/// Densities of some types among others, in nm and ps.
+// clang-format off
+/// Densities of some types among others, by each law of weights, in nm and ps.
 static const char mixture[] =
-    "{\"seed\": 1, \"units\": \"nm-ps\", \"box\": [1.8, 1.9, 2.0], \"time_step\": 0.04,\n"
+    "{\"seed\": 1, \"units\": \"nm-ps\", \"box\": [1.8, 1.9, 2.0], \"time_step\": 0.01,\n"
     "\"temperature\": 300, \"precision\": \"double\",\n"
-    "\"particles\": {\"types\": {\"A\": 65, \"B\": 85, \"C\": 12}, \"mass\": {\"A\": 18, \"B\": "
-    "30, \"C\": 10}},\n"
-    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 8, \"cutoff\": 0.6},\n"
+    "\"particles\": {\"types\": {\"A\": 65, \"B\": 85, \"C\": 12}, \"mass\": {\"A\": 18, \"B\": 30, \"C\": 10}},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 60, \"cutoff\": 0.6},\n"
     "\"dissipative\": {\"law\": \"power\", \"sigma\": 20, \"cutoff\": 0.6},\n"
     "\"many_body\": {\n"
-    "  \"all\": {" WEIGHT(
-        0.3,
-        0.7) ",\n"
-             "    \"energy\": {\"law\": \"polynomial\", \"c1\": -1, \"c2\": 0.02, \"c3\": -0.01, "
-             "\"c4\": "
-             "0.0005, \"origin\": 9}},\n"
-             "  \"some\": {\"central\": \"A\", \"neighbours\": \"B C\", " WEIGHT(
-                 0,
-                 0.8) ",\n"
-                      "    \"energy\": {\"law\": \"expression\", \"formula\": \"-12*rho/(rho + "
-                      "4)\", \"maximum\": "
-                      "100}},\n"
-                      "  \"others\": {\"central\": \"C\", \"neighbours\": \"A\", " WEIGHT(
-                          0.4,
-                          0.75) ",\n"
-                                "    \"energy\": {\"law\": \"table\", \"file\": \"f.tsv\"}},\n"
-                                "  \"one\": {\"central\": \"B\", " WEIGHT(
-                                    0.1,
-                                    0.5) ",\n"
-                                         "    \"energy\": {\"law\": \"polynomial\", \"c2\": "
-                                         "0.3}},\n"
-                                         "  \"two\": {\"neighbours\": \"A C\", " WEIGHT(
-                                             0.1,
-                                             0.5) ",\n"
-                                                  "    \"energy\": {\"law\": \"polynomial\", "
-                                                  "\"c2\": -0.2}},\n"
-                                                  "  \"three\": {\"central\": \"A B\", "
-                                                  "\"neighbours\": \"C\", " WEIGHT(
-                                                      0.2,
-                                                      0.6) ",\n"
-                                                           "    \"energy\": {\"law\": "
-                                                           "\"polynomial\", \"c1\": 1.5, \"c2\": "
-                                                           "0.4}},\n"
-                                                           "  \"four\": {" WEIGHT(
-                                                               0.1,
-                                                               0.7) ", \"energy\": {\"law\": "
-                                                                    "\"polynomial\", \"c2\": "
-                                                                    "0.01}},\n"
-                                                                    "  \"five\": {" WEIGHT(
-                                                                        0.1,
-                                                                        0.4) ", \"energy\": "
-                                                                             "{\"law\": "
-                                                                             "\"polynomial\", "
-                                                                             "\"c2\": 0.1}}},\n"
-                                                                             "\"rdf\": {\"range\": "
-                                                                             "0.9}, \"measure\": "
-                                                                             "{\"equilibration\": "
-                                                                             "20, \"samples\": 2, "
-                                                                             "\"every\": 5},\n"
-                                                                             "\"snapshots\": "
-                                                                             "{\"every\": 10, "
-                                                                             "\"formats\": "
-                                                                             "[\"json\"]}}\n";
+    "  \"all\": {" WEIGHT(0.3, 0.7) ", \"energy\": {\"law\": \"polynomial\", \"c1\": -1, \"c2\": 0.02, \"c3\": -0.002,\n"
+    "    \"c4\": 0.00005, \"origin\": 9}},\n"
+    "  \"some\": {\"central\": \"A\", \"neighbours\": \"B C\", \"weight\": {\"law\": \"lucy\", \"cutoff\": 0.8},\n"
+    "    \"energy\": {\"law\": \"expression\", \"formula\": \"-12*rho/(rho + 4)\", \"maximum\": 100}},\n"
+    "  \"others\": {\"central\": \"C\", \"neighbours\": \"A\", " WEIGHT(0.4, 0.75) ",\n"
+    "    \"energy\": {\"law\": \"table\", \"file\": \"f.tsv\"}},\n"
+    "  \"one\": {\"central\": \"B\", \"weight\": {\"law\": \"many-body-dpd\", \"cutoff\": 0.6},\n"
+    "    \"energy\": {\"law\": \"many-body-dpd\", \"b\": 5, \"cutoff\": 0.6}},\n"
+    "  \"two\": {\"neighbours\": \"A C\", \"weight\": {\"law\": \"expression\", \"formula\": \"exp(-4*r^2)\", \"cutoff\": 0.7},\n"
+    "    \"energy\": {\"law\": \"polynomial\", \"c2\": -0.2}},\n"
+    "  \"three\": {\"central\": \"A B\", \"neighbours\": \"C\", \"weight\": {\"law\": \"table\", \"file\": \"w.tsv\"},\n"
+    "    \"energy\": {\"law\": \"polynomial\", \"c1\": 1.5, \"c2\": 0.4}},\n"
+    "  \"four\": {\"weight\": {\"law\": \"lucy\", \"cutoff\": 0.7}, \"energy\": {\"law\": \"polynomial\", \"c2\": 0.01}},\n"
+    "  \"five\": {" WEIGHT(0.1, 0.4) ", \"energy\": {\"law\": \"polynomial\", \"c2\": 0.1}}},\n"
+    "\"rdf\": {\"range\": 0.9}, \"measure\": {\"equilibration\": 500, \"samples\": 2, \"every\": 5},\n"
+    "\"snapshots\": {\"every\": 300, \"formats\": [\"json\"]}}\n";
+// clang-format on
 
 /// Nearest neighbours, and those two bonds apart, count neither for the pairs nor for densities.
 static const char chains[] =
@@ -125,46 +89,39 @@ static double twice_kinetic(const struct particles *particles) {
     return sum;
 }
 
+/// @param[in] bound  of a bead's share of the virial [k_B T_0]
+static void compare_pressure(double bound) {
+    static struct lammps_runs_ours ours;
+    double theirs;
+    lammps_runs_once("press", &theirs, 1);
+    lammps_runs_find_ours(&ours);
+    const struct export_units units = mf_export_units(EXPORT_REAL, &ours.model.scene.units, false);
+    const struct particles *particles = &ours.simulation.particles;
+    const double volume = mf_box_volume(&particles->box);
+    const double now = (ours.simulation.sums.virial + twice_kinetic(particles)) /
+                       (particles->box.dimensions * volume);
+    print_message("pressure %.9g, ours %.9g\n", theirs / units.pressure, now);
+    assert_true(fabs(theirs / units.pressure - now) < bound * (double)ours.model.count / volume);
+    lammps_runs_clear_ours(&ours);
+}
+
 /// Bounds: what tables promise is 1e-4 k_B T of a bead's energy and 1e-3 of the largest slope;
 /// polynomials are a cubic or nearly so, and what is left is the table of the pairs.
 static void compare(struct temporary_folder *folder, const char *scene, double bound) {
-    static struct lammps_runs_ours ours;
-    double values[2];
-    lammps_runs_skip_without("local/density");
+    lammps_runs_skip_without("eam/fs");
     small_inputs_write(folder, "scene.json", scene, NULL, NULL);
     small_inputs_write(folder, "f.tsv",
                        "# rho f[kJ/mol]\n0 0\n1 -0.4\n3 0.9\n6 2\n10 1.7\n15 2.5\n20 4\n", NULL,
+                       NULL);
+    small_inputs_write(folder, "w.tsv", "0 1\n0.2 0.8\n0.4 0.5\n0.5 0.25\n0.6 0.07\n0.7 0\n", NULL,
                        NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
     RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "lammps");
     run_program_assert_code(&result, 0);
-    lammps_runs_once(strstr(scene, "bonds") ? "evdwl ebond" : "evdwl press", values, 2);
-    lammps_runs_find_ours(&ours);
-    const struct simulation *simulation = &ours.simulation;
-    const struct box *box = &simulation->particles.box;
-    const struct export_units units = mf_export_units(EXPORT_REAL, &ours.model.scene.units, false);
-    const double beads = (double)ours.model.count;
-    const double bonds = strstr(scene, "bonds") ? values[1] / units.energy : 0;
-    const double energy = values[0] / units.energy + bonds;
-    const double force = lammps_runs_compare_forces(&ours, export_units_force(&units));
-    double largest = 0;
-    for (size_t k = 0; k < ours.model.count; k++)
-        for (int d = 0; d < box->dimensions; d++)
-            largest = fmax(largest, fabs(simulation->particles.force[d][k]));
-    print_message("energies of a bead %.9g, ours %.9g; forces up to %.4g differ by %.2g\n",
-                  energy / beads, simulation->sums.energy / beads, largest, force);
-    assert_true(fabs(energy - simulation->sums.energy) < bound * beads);
-    assert_true(force < bound * largest);
-    if (bonds == 0) {
-        const double kinetic = twice_kinetic(&simulation->particles);
-        const double ours_now =
-            (simulation->sums.virial + kinetic) / (box->dimensions * mf_box_volume(box));
-        print_message("pressure %.9g, ours %.9g\n", values[1] / units.pressure, ours_now);
-        assert_true(fabs(values[1] / units.pressure - ours_now) <
-                    bound * largest * beads / mf_box_volume(box));
-    }
-    lammps_runs_clear_ours(&ours);
+    const struct lammps_runs_apart apart = lammps_runs_compare(100);
+    assert_true(apart.energy < bound && apart.force < bound * apart.largest_force);
+    compare_pressure(bound * apart.largest_force);
 }
 
 static void test_mixtures_have_our_energies_and_forces(void **state) {
@@ -244,7 +201,7 @@ static double density_of_dump(const char *file, double *error) {
 static void test_fluid_has_our_structure_pressure_and_density(void **state) {
     char scene[2048], key[64];
     const bool is_long = length_is_long();
-    lammps_runs_skip_without("local/density");
+    lammps_runs_skip_without("eam/fs");
     snprintf(scene, sizeof scene, fluid, is_long ? 2000 : 300);
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");

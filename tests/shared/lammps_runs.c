@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shared/lammps_runs.h"
 
+#include "base/rng.h"
+#include "export/export_units.h"
 #include "forces/bonded.h"
+#include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -59,33 +62,40 @@ double lammps_runs_energy_of(const struct lammps_runs_ours *ours, int order) {
     return sum;
 }
 
-/// The exported input up to its integrator, and what asks for a start.
-static void write_input(const char *columns) {
+/// The exported input up to its integrator, and what asks for forces and sums.
+/// @param[in] command  that visits the configurations
+static void write_input(const char *columns, const char *command) {
     FILE *from = fopen("lammps/in.mesofit", "r"), *to = fopen("lammps/in.once", "w");
     char line[4096];
     assert_true(from && to);
-    while (fgets(line, sizeof line, from) && strncmp(line, "fix move", 8) != 0)
+    while (fgets(line, sizeof line, from) && strstr(line, "is_defined(variable,pressure)") == NULL)
         fputs(line, to);
     fprintf(to,
-            "unfix bath\nfix move all nve\nthermo_style custom step %s\n"
+            "unfix bath\nfix move all nve\nthermo 1\nthermo_style custom step %s\n"
             "thermo_modify norm no format float %%.15g\n"
             "dump forces all custom 1 forces.txt id fx fy fz\n"
-            "dump_modify forces sort id format float %%.15g\nrun 0\n",
-            columns);
+            "dump_modify forces sort id format float %%.15g\n%s\n",
+            columns, command);
     fclose(from);
     fclose(to);
 }
 
-void lammps_runs_once(const char *columns, double *values, size_t count) {
+/// Run it, and read its log up to the names of the columns.
+static FILE *run_input(void) {
     char line[1024];
-    write_input(columns);
     if (system("cd lammps && lmp -in in.once >lmp.out 2>&1") != 0)
-        fail_msg("LAMMPS failed: see lammps/lmp.out");
+        fail_msg("LAMMPS failed: %s", temporary_folder_read("lammps/lmp.out"));
     FILE *stream = fopen("lammps/log.lammps", "r");
     assert_non_null(stream);
     do
         assert_non_null(fgets(line, sizeof line, stream));
     while (strncmp(line + strspn(line, " "), "Step", 4) != 0);
+    return stream;
+}
+
+void lammps_runs_once(const char *columns, double *values, size_t count) {
+    write_input(columns, "run 0");
+    FILE *stream = run_input();
     assert_int_equal(fscanf(stream, "%*d"), 0);
     for (size_t k = 0; k < count; k++)
         assert_int_equal(fscanf(stream, "%lf", &values[k]), 1);
@@ -120,31 +130,159 @@ double lammps_runs_compare_forces(const struct lammps_runs_ours *ours, double un
     return worst;
 }
 
+// Many configurations -----------------------------------------------------------------------------
+
+void lammps_runs_move(struct lammps_runs_ours *ours, uint32_t configuration) {
+    struct simulation_start start = {{0}, {0}};
+    struct rng_sequence random = mf_rng_sequence_begin(7, RNG_PLACEMENT, configuration + 1, 0);
+    struct rng_sequence before = mf_rng_sequence_begin(7, RNG_PLACEMENT, configuration, 0);
+    for (int d = 0; d < ours->model.setup.box.dimensions; d++) {
+        for (size_t k = 0; k < ours->model.count; k++) {
+            ours->model.position[d][k] += 0.1 * (mf_rng_sequence_uniform(&random) - 0.5);
+            if (configuration > 0)
+                ours->model.position[d][k] -= 0.1 * (mf_rng_sequence_uniform(&before) - 0.5);
+        }
+        start.position[d] = ours->model.position[d];
+        start.velocity[d] = ours->model.velocity[d];
+    }
+    mf_simulation_clear(&ours->simulation);
+    assert_ok(mf_simulation_init(&ours->simulation, &ours->model.setup, &start));
+    assert_ok(mf_simulation_compute_potential(&ours->simulation));
+}
+
+/// A frame of LAMMPS's dump.
+static void write_frame(const struct lammps_runs_ours *ours, const struct export_units *units,
+                        int frame, FILE *stream) {
+    const struct particles *particles = &ours->simulation.particles;
+    const struct box *box = &particles->box;
+    fprintf(stream, "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%zu\nITEM: BOX BOUNDS pp pp pp\n",
+            frame, particles->count);
+    for (int d = 0; d < 3; d++)
+        fprintf(stream, "%.17g %.17g\n", d < box->dimensions ? 0 : -0.5 * units->length,
+                (d < box->dimensions ? box->length[d] : 0.5) * units->length);
+    fprintf(stream, "ITEM: ATOMS id x y z\n");
+    for (size_t k = 0; k < particles->count; k++) {
+        fprintf(stream, "%u", particles->id[k] + 1);
+        for (int d = 0; d < 3; d++)
+            fprintf(stream, " %.17g",
+                    d < box->dimensions ? particles->position[d][k] * units->length : 0);
+        fprintf(stream, "\n");
+    }
+}
+
+/// How far the forces of the next frame of a dump are from ours, at most.
+static double read_frame(const struct lammps_runs_ours *ours, double unit, FILE *stream) {
+    enum { MOST = 10000 };
+    static double f[MOST][3];
+    const struct particles *particles = &ours->simulation.particles;
+    char line[1024];
+    double worst = 0;
+    assert_true(particles->count <= MOST);
+    do
+        assert_non_null(fgets(line, sizeof line, stream));
+    while (strncmp(line, "ITEM: ATOMS", 11) != 0);
+    for (size_t id = 0; id < particles->count; id++) {
+        assert_non_null(fgets(line, sizeof line, stream));
+        assert_int_equal(sscanf(line, "%*u %lf %lf %lf", &f[id][0], &f[id][1], &f[id][2]), 3);
+    }
+    for (size_t k = 0; k < particles->count; k++)
+        for (int d = 0; d < particles->box.dimensions; d++)
+            worst = fmax(worst, fabs(f[particles->id[k]][d] / unit - particles->force[d][k]));
+    return worst;
+}
+
+/// A row of the log, which may have warnings before it: of images, which a rerun does not set.
+static void read_row(FILE *stream, double energy[1 + BONDED_KINDS]) {
+    char line[1024];
+    do
+        assert_non_null(fgets(line, sizeof line, stream));
+    while (sscanf(line, "%*d %lf %lf %lf %lf", &energy[0], &energy[1], &energy[2], &energy[3]) !=
+           1 + BONDED_KINDS);
+}
+
+static double largest_force(const struct particles *particles) {
+    double largest = 0;
+    for (size_t k = 0; k < particles->count; k++)
+        for (int d = 0; d < particles->box.dimensions; d++)
+            largest = fmax(largest, fabs(particles->force[d][k]));
+    return largest;
+}
+
+struct lammps_runs_apart lammps_runs_compare(int configurations) {
+    static struct lammps_runs_ours ours;
+    struct lammps_runs_apart apart = {0};
+    FILE *frames = fopen("lammps/frames.dump", "w");
+    assert_non_null(frames);
+    lammps_runs_find_ours(&ours);
+    const struct export_units units = mf_export_units(EXPORT_REAL, &ours.model.scene.units, false);
+    for (int k = 0; k < configurations; k++, lammps_runs_move(&ours, (uint32_t)k))
+        write_frame(&ours, &units, k, frames);
+    fclose(frames);
+    lammps_runs_clear_ours(&ours); // the same configurations once more
+    lammps_runs_find_ours(&ours);
+    write_input("evdwl ebond eangle edihed", ours.model.setup.box.dimensions == 2
+                                                 ? "rerun frames.dump dump x y"
+                                                 : "rerun frames.dump dump x y z");
+    FILE *log = run_input(), *forces = fopen("lammps/forces.txt", "r");
+    assert_non_null(forces);
+    for (int k = 0; k < configurations; k++, lammps_runs_move(&ours, (uint32_t)k)) {
+        double e[1 + BONDED_KINDS], energy = 0;
+        read_row(log, e);
+        for (int order = 0; order <= BONDED_KINDS; order++)
+            energy += e[order] / units.energy;
+        apart.energy = fmax(apart.energy,
+                            fabs(energy - ours.simulation.sums.energy) / (double)ours.model.count);
+        apart.force = fmax(apart.force, read_frame(&ours, export_units_force(&units), forces));
+        apart.largest_force = fmax(apart.largest_force, largest_force(&ours.simulation.particles));
+    }
+    fclose(log);
+    fclose(forces);
+    lammps_runs_clear_ours(&ours);
+    print_message(
+        "%d configurations: energies of a bead %.2g apart, forces up to %.4g %.2g apart\n",
+        configurations, apart.energy, apart.largest_force, apart.force);
+    return apart;
+}
+
 // Runs -------------------------------------------------------------------------------------------
 
+/// The number in a column of a line, from 0 on.
+static double number_in(const char *line, int column) {
+    char *rest = (char *)line;
+    double value = 0;
+    for (int k = 0; k <= column; k++)
+        value = strtod(rest, &rest);
+    return value;
+}
+
 double lammps_runs_rdf_difference(double unit) {
-    FILE *first = fopen("out/rdf.tsv", "r"), *second = fopen("lammps/rdf.dat", "r");
+    return lammps_runs_rdf_difference_of("out/rdf.tsv", 0, unit);
+}
+
+double lammps_runs_rdf_difference_of(const char *table, int pair, double unit) {
+    FILE *first = fopen(table, "r"), *second = fopen("lammps/rdf.dat", "r");
     char line[512], other[512];
-    double squares = 0;
+    double squares = 0, shells = 0;
     int rows = 0;
     assert_true(first && second);
     for (int k = 0; k < 4; k++) // three comments and the step
         assert_non_null(fgets(other, sizeof other, second));
     while (fgets(line, sizeof line, first)) {
-        double r, g, their_r, their_g;
+        double r, g;
         if (line[0] == '#')
             continue;
         assert_int_equal(sscanf(line, "%lf %lf", &r, &g), 2);
         assert_non_null(fgets(other, sizeof other, second));
-        assert_int_equal(sscanf(other, "%*d %lf %lf", &their_r, &their_g), 2);
-        assert_true(fabs(their_r - unit * r) < 1e-5); // the same bins
-        squares += (g - their_g) * (g - their_g);
+        const double their_g = number_in(other, 2 + 2 * pair);
+        assert_true(fabs(number_in(other, 1) - unit * r) < 1e-5); // the same bins
+        squares += r * r * (g - their_g) * (g - their_g);         // as many pairs as r²
+        shells += r * r;
         rows++;
     }
     fclose(first);
     fclose(second);
     assert_int_equal(rows, 100);
-    return sqrt(squares / rows);
+    return sqrt(squares / shells);
 }
 
 double lammps_runs_mean(int column, double *error) {
@@ -156,9 +294,8 @@ double lammps_runs_mean(int column, double *error) {
     double sum = 0, squares = 0;
     assert_non_null(stream);
     while (fgets(line, sizeof line, stream)) {
-        double v[4];
-        if (line[0] != '#' && sscanf(line, "%lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3]) == 4)
-            values[rows++] = v[column];
+        if (line[0] != '#')
+            values[rows++] = number_in(line, column);
     }
     fclose(stream);
     for (int b = 0; b < BLOCKS; b++) {

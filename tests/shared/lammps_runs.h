@@ -28,11 +28,26 @@ void lammps_runs_once(const char *columns, double *values, size_t count);
 /// @param[in] unit  of the engine's force
 double lammps_runs_compare_forces(const struct lammps_runs_ours *ours, double unit);
 
+/// Move each coordinate of the exported configuration by up to 0.05 λ; one after the other from 0
+/// on.
+void lammps_runs_move(struct lammps_runs_ours *ours, uint32_t configuration);
+
+/// The largest differences of LAMMPS from us in any of the configurations: the exported one, and
+/// those that lammps_runs_move makes of it.
+struct lammps_runs_apart {
+    double energy;               ///< of a bead [k_B T_0]
+    double force, largest_force; ///< and the largest force [k_B T_0/λ]
+};
+struct lammps_runs_apart lammps_runs_compare(int configurations);
+
 /// Root mean square of the difference of g in the last rows of lammps/rdf.dat from that of
-/// out/rdf.tsv, of a hundred bins and one pair type.
+/// a table of the result, of a hundred bins, by the volumes of the bins.
 /// @param[in] unit  of the engine's length
+/// @param[in] pair  whose columns are compared, from 0 on
+double lammps_runs_rdf_difference_of(const char *table, int pair, double unit);
+/// The same of out/rdf.tsv and one pair type.
 double lammps_runs_rdf_difference(double unit);
 
 /// Mean of a column of lammps/thermo.dat, and its error by twenty blocks. Columns: the step,
-/// temperature, pressure, energy of a particle.
+/// temperature, pressure, energy of a particle, density.
 double lammps_runs_mean(int column, double *error);
