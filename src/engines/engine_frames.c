@@ -92,6 +92,10 @@ static enum status find_atoms(const struct engine_run *run, struct engine_frames
 
 // Frames ------------------------------------------------------------------------------------------
 
+/// By which a box may differ from that of the scene and be the same, as a part of its edges; and
+/// beyond which it is that of another system, or in other units.
+static const double rounding = 1e-4, another = 0.5;
+
 static enum status open_trajectory(const struct engine_run *run, struct engine_frames *frames) {
     const struct units *units = &run->fit->scene.units;
     // LAMMPS is given real units where there is a scale, a command those of the run file.
@@ -158,31 +162,62 @@ enum status mf_engine_frames_open(struct engine_run *run, const struct engine_pi
     return status;
 }
 
-/// The box must be that of the scene, as g* is normalised by it.
-static enum status check_box(const struct engine_frames *frames) {
-    static const double rounding = 1e-4;
-    const struct trajectory_frame *frame = &frames->frame;
-    for (int a = 0; frame->has_box && a < frames->box->dimensions; a++)
+static enum status check_periodic(const struct trajectory_frame *frame, int dimensions) {
+    for (int a = 0; frame->has_box && a < dimensions; a++)
         if (!frame->periodic[a])
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s: frame %zu: the box is not periodic along %c, and g(r) is that "
                 "of periodic boxes",
-                frames->file, frame->number, 'x' + a);
-    for (int a = 0; frame->has_box && a < frames->box->dimensions; a++)
-        for (int b = 0; b < frames->box->dimensions; b++) {
-            const double wanted = a == b ? frames->box->length[a] * frames->nm : 0;
-            if (fabs(frame->box[a][b] - wanted) > rounding * frames->box->length[a] * frames->nm)
-                return mf_status_fail(
-                    STATUS_BAD_INPUT,
-                    "%s: frame %zu: the box is %.6g by %.6g by %.6g" STATUS_LENGTH
-                    " where the scene's is %.6g by %.6g by %.6g" STATUS_LENGTH
-                    "; \"box\" of the scene must be that of the engine, rectangular and constant, "
-                    "and the frames in their format's units",
-                    frames->file, frame->number, frame->box[0][0] / frames->nm,
-                    frame->box[1][1] / frames->nm, frame->box[2][2] / frames->nm,
-                    frames->box->length[0], frames->box->length[1], frames->box->length[2]);
+                frame->file, frame->number, 'x' + a);
+    return STATUS_OK;
+}
+
+static enum status refuse_box(const struct engine_frames *frames, const char *why) {
+    const struct trajectory_frame *frame = &frames->frame;
+    const double nm = frames->nm, *scene = frames->box->length;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: frame %zu: the box is %.6g by %.6g by %.6g" STATUS_LENGTH
+                          " where the scene's is %.6g by %.6g by %.6g" STATUS_LENGTH "; %s",
+                          frames->file, frame->number, frame->box[0][0] / nm, frame->box[1][1] / nm,
+                          frame->box[2][2] / nm, scene[0], scene[1], scene[2], why);
+}
+
+/// Whether an edge is off by so much of that of the scene, or tilted by it.
+static bool is_off(const struct engine_frames *frames, double allowed) {
+    const struct box *box = frames->box;
+    bool off = false;
+    for (int a = 0; a < box->dimensions; a++)
+        for (int b = 0; b < box->dimensions; b++) {
+            const double wanted = a == b ? box->length[a] * frames->nm : 0;
+            off = off || fabs(frames->frame.box[a][b] - wanted) >
+                             (a == b ? allowed : rounding) * box->length[a] * frames->nm;
         }
+    return off;
+}
+
+/// At constant volume the box is that of the scene; at constant pressure, where the density is a
+/// target, it is that of the frame.
+static enum status find_box(struct engine_frames *frames, struct box *box) {
+    const struct trajectory_frame *frame = &frames->frame;
+    const bool changes = targets_ask(&frames->run->fit->problem.compared, TARGET_DENSITY);
+    *box = *frames->box;
+    TRY(check_periodic(frame, box->dimensions));
+    if (!frame->has_box)
+        return changes ? mf_status_fail(STATUS_BAD_INPUT,
+                                        "%s: target.density: its frames tell no box", frames->file)
+                       : STATUS_OK;
+    if (!changes)
+        return is_off(frames, rounding)
+                   ? refuse_box(frames, "\"box\" of the scene must be that of the engine, "
+                                        "rectangular and, unless \"density\" is a target, "
+                                        "constant, and the frames in their format's units")
+                   : STATUS_OK;
+    if (is_off(frames, another))
+        return refuse_box(frames, "it must be rectangular, of about that density, and in the "
+                                  "units of its format");
+    for (int d = 0; d < box->dimensions; d++)
+        box->length[d] = frame->box[d][d] / frames->nm;
     return STATUS_OK;
 }
 
@@ -215,10 +250,10 @@ static enum status find_sample(struct engine_frames *frames, struct engine_sampl
     if (!known && numbers->step)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: no numbers of step %lld are beside it",
                               frames->file, (long long)frames->frame.step);
-    *sample =
-        (struct engine_sample){known && numbers->temperature ? numbers->temperature[row] : NAN,
-                               known && numbers->pressure ? numbers->pressure[row] : NAN,
-                               known && numbers->energy ? numbers->energy[row] : NAN};
+    *sample = (struct engine_sample){
+        .temperature = known && numbers->temperature ? numbers->temperature[row] : NAN,
+        .pressure = known && numbers->pressure ? numbers->pressure[row] : NAN,
+        .energy = known && numbers->energy ? numbers->energy[row] : NAN};
     return STATUS_OK;
 }
 
@@ -233,12 +268,14 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
         if (!more)
             return fail_short(frames);
     }
-    TRY(check_box(frames));
+    struct box box;
+    TRY(find_box(frames, &box));
     TRY(check_motion(frames));
     TRY(find_sample(frames, sample));
+    sample->box = box;
     frames->taken++;
-    for (int d = 0; d < frames->box->dimensions; d++) {
-        const double length = frames->box->length[d];
+    for (int d = 0; d < box.dimensions; d++) {
+        const double length = box.length[d];
         for (size_t bead = 0; bead < frames->beads; bead++) {
             const double x = frame->position[frames->atom[bead]][d] / frames->nm;
             if (!isfinite(x))

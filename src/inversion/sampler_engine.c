@@ -4,6 +4,7 @@
 // plan. Pairs are counted by our own force pass, whose energies must be those of the program.
 #include "base/statistics.h"
 #include "dynamics/hybrid.h"
+#include "dynamics/simulation_change.h"
 #include "inversion/sampler_source.h"
 #include "problem/sampling_engine.h"
 
@@ -107,11 +108,12 @@ static enum status plan(void *own, uint64_t samples, uint64_t every) {
     return status;
 }
 
-static void place(struct engine_source *source) {
+static enum status place(struct engine_source *source, const struct box *box) {
     struct particles *particles = &source->hybrid.simulation.particles;
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
             particles->position[d][k] = source->position[d][particles->id[k]];
+    return mf_simulation_set_box(&source->hybrid.simulation, box);
 }
 
 /// Whether the program has the potential that it was given.
@@ -158,7 +160,7 @@ static enum status run(void *own, uint64_t sweeps, struct sampler_pairs *pairs) 
     struct engine_sample sample;
     (void)sweeps; // as they were planned
     TRY(source->engine->next(source->frames, source->position, &sample));
-    place(source);
+    TRY(place(source, &sample.box));
     TRY(mf_hybrid_refresh(hybrid));
     TRY(check_energy(source, sample.energy));
     TRY(check_temperature(source, sample.temperature));
@@ -166,7 +168,7 @@ static enum status run(void *own, uint64_t sweeps, struct sampler_pairs *pairs) 
     if (!source->engine->whole_energy && !isfinite(sample.pressure))
         pairs->sums.virial = 0; // that of the known forces is missing
     if (isfinite(sample.pressure)) {
-        const struct box *box = &hybrid->simulation.particles.box;
+        const struct box *box = &hybrid->simulation.setup.box; // where pressures are found by it
         const double ideal = (double)hybrid->simulation.particles.count * source->temperature;
         pairs->sums.virial = box->dimensions * (sample.pressure * mf_box_volume(box) - ideal);
     }
