@@ -3,6 +3,9 @@
 #include "base/memory.h"
 #include "engines/engine.h"
 #include "engines/engine_folder.h"
+#include "forces/molecules.h"
+#include "defaults/fit_engine.h"
+#include "trajectory/frame_box.h"
 
 #include <math.h>
 #include <string.h>
@@ -183,41 +186,83 @@ static enum status refuse_box(const struct engine_frames *frames, const char *wh
                           frame->box[2][2] / nm, scene[0], scene[1], scene[2], why);
 }
 
-/// Whether an edge is off by so much of that of the scene, or tilted by it.
-static bool is_off(const struct engine_frames *frames, double allowed) {
-    const struct box *box = frames->box;
-    bool off = false;
-    for (int a = 0; a < box->dimensions; a++)
-        for (int b = 0; b < box->dimensions; b++) {
-            const double wanted = a == b ? box->length[a] * frames->nm : 0;
-            off = off || fabs(frames->frame.box[a][b] - wanted) >
-                             (a == b ? allowed : rounding) * box->length[a] * frames->nm;
+static bool is_tilted(const struct engine_frames *frames) {
+    bool tilted = false;
+    for (int a = 0; a < frames->box->dimensions; a++)
+        for (int b = 0; b < frames->box->dimensions; b++)
+            tilted = tilted || (a != b && fabs(frames->frame.box[a][b]) >
+                                              rounding * frames->box->length[a] * frames->nm);
+    return tilted;
+}
+
+/// What counts molecules, and verifies, knows rectangular boxes.
+static enum status refuse_tilted(const struct engine_frames *frames) {
+    const struct fit_file *fit = frames->run->fit;
+    const struct simulation_setup *setup = &fit->scene.setup;
+    const int by = fit->verification.by;
+    if (frames->box->dimensions == 2 || mf_molecules_find(setup->interaction, setup->interactions))
+        return refuse_box(frames, "it is tilted, which a box of molecules, or of two dimensions, "
+                                  "may not be");
+    if (by == VERIFY_BY_ENGINE || (by == VERIFY_BY_AUTO && mf_fit_engine_knows_more(fit)))
+        return refuse_box(frames, "it is tilted: what is found in such a box is verified by "
+                                  "mesofit, in a rectangular one, if the scene has all forces: "
+                                  "\"verification\": {\"by\": \"mesofit\"}");
+    return STATUS_OK;
+}
+
+/// In λ, with the diagonal as the edges of a box of the same volume.
+static enum status find_vectors(struct engine_frames *frames, struct engine_sample *sample) {
+    struct box_vectors *v = &sample->vectors;
+    TRY(refuse_tilted(frames));
+    TRY(mf_frame_box_find(v, &frames->frame));
+    for (int a = 0; a < 3; a++) {
+        sample->box.length[a] = v->edge[a][a] / frames->nm;
+        v->height[a] /= frames->nm;
+        for (int b = 0; b < 3; b++) {
+            v->edge[a][b] /= frames->nm;
+            v->inverse[a][b] *= frames->nm;
         }
-    return off;
+    }
+    v->volume /= frames->nm * frames->nm * frames->nm;
+    return STATUS_OK;
+}
+
+/// Whether the box is not that of the scene: its edges, or the volume of one that is tilted; at
+/// constant pressure by much.
+static bool is_another(const struct engine_frames *frames, const struct engine_sample *sample,
+                       bool changes) {
+    const struct box *scene = frames->box, *box = &sample->box;
+    const double allowed = changes ? another : rounding;
+    bool is = sample->tilted && fabs(mf_box_volume(box) / mf_box_volume(scene) - 1) > 3 * allowed;
+    for (int d = 0; d < scene->dimensions && !sample->tilted; d++)
+        is = is || fabs(box->length[d] / scene->length[d] - 1) > allowed;
+    return is;
 }
 
 /// At constant volume the box is that of the scene; at constant pressure, where the density is a
-/// target, it is that of the frame.
-static enum status find_box(struct engine_frames *frames, struct box *box) {
+/// target, it is that of the frame. In a tilted one of the same volume g(r) is the same.
+static enum status find_box(struct engine_frames *frames, struct engine_sample *sample) {
     const struct trajectory_frame *frame = &frames->frame;
     const bool changes = targets_ask(&frames->run->fit->problem.compared, TARGET_DENSITY);
-    *box = *frames->box;
-    TRY(check_periodic(frame, box->dimensions));
+    sample->box = *frames->box;
+    sample->tilted = false;
+    TRY(check_periodic(frame, sample->box.dimensions));
     if (!frame->has_box)
         return changes ? mf_status_fail(STATUS_BAD_INPUT,
                                         "%s: target.density: its frames tell no box", frames->file)
                        : STATUS_OK;
-    if (!changes)
-        return is_off(frames, rounding)
-                   ? refuse_box(frames, "\"box\" of the scene must be that of the engine, "
-                                        "rectangular and, unless \"density\" is a target, "
-                                        "constant, and the frames in their format's units")
-                   : STATUS_OK;
-    if (is_off(frames, another))
-        return refuse_box(frames, "it must be rectangular, of about that density, and in the "
-                                  "units of its format");
-    for (int d = 0; d < box->dimensions; d++)
-        box->length[d] = frame->box[d][d] / frames->nm;
+    sample->tilted = is_tilted(frames);
+    for (int d = 0; d < sample->box.dimensions; d++)
+        sample->box.length[d] = frame->box[d][d] / frames->nm;
+    if (sample->tilted)
+        TRY(find_vectors(frames, sample));
+    if (is_another(frames, sample, changes))
+        return refuse_box(
+            frames, changes ? "it must be of about that density, and in the units of its format"
+                            : "\"box\" of the scene must be that of the engine, constant unless "
+                              "\"density\" is a target, and the frames in their format's units");
+    if (!changes && !sample->tilted)
+        sample->box = *frames->box;
     return STATUS_OK;
 }
 
@@ -257,6 +302,16 @@ static enum status find_sample(struct engine_frames *frames, struct engine_sampl
     return STATUS_OK;
 }
 
+/// Along an axis, or of a tilted box as much of the vector.
+static double place_along(const struct engine_frames *frames, const struct engine_sample *sample,
+                          size_t atom, int d) {
+    const double *place = frames->frame.position[atom], *row = sample->vectors.inverse[d];
+    if (!sample->tilted)
+        return place[d] / frames->nm;
+    return sample->box.length[d] / frames->nm *
+           (place[0] * row[0] + place[1] * row[1] + place[2] * row[2]);
+}
+
 enum status mf_engine_frames_next(void *memory, double *const position[3],
                                   struct engine_sample *sample) {
     struct engine_frames *frames = memory;
@@ -268,16 +323,14 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
         if (!more)
             return fail_short(frames);
     }
-    struct box box;
-    TRY(find_box(frames, &box));
     TRY(check_motion(frames));
     TRY(find_sample(frames, sample));
-    sample->box = box;
+    TRY(find_box(frames, sample));
     frames->taken++;
-    for (int d = 0; d < box.dimensions; d++) {
-        const double length = box.length[d];
+    for (int d = 0; d < sample->box.dimensions; d++) {
+        const double length = sample->box.length[d];
         for (size_t bead = 0; bead < frames->beads; bead++) {
-            const double x = frame->position[frames->atom[bead]][d] / frames->nm;
+            const double x = place_along(frames, sample, frames->atom[bead], d);
             if (!isfinite(x))
                 return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: a position is no number",
                                       frames->file, frame->number);

@@ -6,6 +6,7 @@
 #include "dynamics/hybrid.h"
 #include "dynamics/simulation_change.h"
 #include "inversion/sampler_source.h"
+#include "inversion/tilted_pairs.h"
 #include "problem/sampling_engine.h"
 
 #include <math.h>
@@ -16,6 +17,7 @@ static const double energy_share = 1e-3, energy_of_bead = 5e-3;
 
 struct engine_source {
     struct hybrid hybrid; ///< of whatever configuration
+    struct tilted_pairs tilted;
     const struct sampling_engine *engine;
     const struct table *potential;
     const struct molecules *molecules;
@@ -35,6 +37,7 @@ static void clear(void *own) {
     for (int d = 0; d < 3; d++)
         mf_memory_free(source->position[d]);
     mf_hybrid_clear(&source->hybrid);
+    mf_tilted_pairs_clear(&source->tilted);
 }
 
 static enum status init(void *own, const struct sampler_system *system,
@@ -108,19 +111,41 @@ static enum status plan(void *own, uint64_t samples, uint64_t every) {
     return status;
 }
 
-static enum status place(struct engine_source *source, const struct box *box) {
+static void place(struct engine_source *source) {
     struct particles *particles = &source->hybrid.simulation.particles;
     for (int d = 0; d < particles->box.dimensions; d++)
         for (size_t k = 0; k < particles->count; k++)
             particles->position[d][k] = source->position[d][particles->id[k]];
-    return mf_simulation_set_box(&source->hybrid.simulation, box);
+}
+
+static enum status count(struct engine_source *source, const struct box *box,
+                         struct sampler_pairs *pairs) {
+    struct hybrid *hybrid = &source->hybrid;
+    TRY(mf_simulation_set_box(&hybrid->simulation, box));
+    TRY(mf_hybrid_refresh(hybrid));
+    *pairs = (struct sampler_pairs){hybrid->counts, hybrid->sums};
+    return STATUS_OK;
+}
+
+/// Particles are then known by their parts of the box's vectors.
+static enum status count_tilted(struct engine_source *source, const struct engine_sample *sample,
+                                struct sampler_pairs *pairs) {
+    struct particles *particles = &source->hybrid.simulation.particles;
+    const struct composition *composition = &source->hybrid.simulation.setup.composition;
+    particles->box = sample->box;
+    for (int d = 0; d < 3; d++)
+        for (size_t k = 0; k < particles->count; k++)
+            source->position[d][k] /= sample->box.length[d];
+    TRY(mf_tilted_pairs_count(&source->tilted, &sample->vectors, source->position, composition,
+                              source->potential, &source->hybrid.trial, &pairs->sums));
+    pairs->counts = source->tilted.counts;
+    return STATUS_OK;
 }
 
 /// Whether the program has the potential that it was given.
-static enum status check_energy(const struct engine_source *source, double energy) {
-    const struct hybrid *hybrid = &source->hybrid;
-    const double beads = (double)hybrid->simulation.particles.count;
-    const double own = hybrid->sums.energy, off = fabs(energy - own);
+static enum status check_energy(const struct engine_source *source, double energy, double own) {
+    const double beads = (double)source->hybrid.simulation.particles.count;
+    const double off = fabs(energy - own);
     if (!isfinite(energy) || (source->molecules && !source->engine->whole_energy) ||
         !(off > energy_share * fabs(own) + energy_of_bead * beads * source->temperature))
         return STATUS_OK;
@@ -160,11 +185,10 @@ static enum status run(void *own, uint64_t sweeps, struct sampler_pairs *pairs) 
     struct engine_sample sample;
     (void)sweeps; // as they were planned
     TRY(source->engine->next(source->frames, source->position, &sample));
-    TRY(place(source, &sample.box));
-    TRY(mf_hybrid_refresh(hybrid));
-    TRY(check_energy(source, sample.energy));
+    place(source);
+    TRY(sample.tilted ? count_tilted(source, &sample, pairs) : count(source, &sample.box, pairs));
+    TRY(check_energy(source, sample.energy, pairs->sums.energy));
     TRY(check_temperature(source, sample.temperature));
-    *pairs = (struct sampler_pairs){hybrid->counts, hybrid->sums};
     if (!source->engine->whole_energy && !isfinite(sample.pressure))
         pairs->sums.virial = 0; // that of the known forces is missing
     if (isfinite(sample.pressure)) {

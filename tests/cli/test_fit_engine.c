@@ -383,6 +383,27 @@ static void test_lammps_meets_a_density(void **state) {
                 5 * results_number("out/summary.json", "ramp_error"));
 }
 
+/// g(r) of a liquid does not know the shape of the box: one that is tilted as far as LAMMPS lets it
+/// gives the same potential.
+static void test_lammps_in_a_tilted_box(void **state) {
+    lammps_runs_skip_without(NULL);
+    small_inputs_write(*state, "in.user", input, "region box block 0 5 0 5 0 5",
+                       "region box prism 0 5 0 5 0 5 2.4 -2.4 2.4");
+    small_inputs_write(*state, "ff.lmp", "# nothing else is known\n", NULL, NULL);
+    small_inputs_write(*state, "run.json", run, ENGINE,
+                       "\"engine\": {\"name\": \"lammps\", \"input\": \"in.user\", \"steps\": 20}");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", "lmp", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "it is tilted: what is found in such a box is verified by"));
+    small_inputs_change(*state, "run.json", "\"verification\": {",
+                        "\"verification\": {\"by\": \"mesofit\", ");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", "lmp", "--force");
+    run_program_assert_code(&result, 0);
+    assert_true(results_number("out/summary.json", "truth_rms_without_ramp") < 0.15);
+    assert_true(fabs(results_number("out/summary.json", "truth_ramp")) <
+                5 * results_number("out/summary.json", "ramp_error"));
+}
+
 static void test_densities_that_cannot_be_are_refused(void **state) {
     static const struct {
         const char *from, *to, *word;
@@ -427,6 +448,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_densities_that_cannot_be_are_refused, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_lammps_meets_a_density, enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_lammps_in_a_tilted_box, enter, small_inputs_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

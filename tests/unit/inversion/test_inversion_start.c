@@ -277,8 +277,8 @@ static void test_inversion_band_counts_the_ramp_that_is_asked_for(void **state) 
                   twice.ramp.drift, twice.ramp.open);
     assert_close_relative(twice.ramp.drift, 2 * once.ramp.drift, 0.03);
     assert_close_relative(twice.ramp.open, once.ramp.open, 1e-6);
-    assert_close_relative(twice.pressure[0].drift, 2 * once.pressure[0].drift, 0.03);
-    assert_close_relative(twice.pressure[0].open, once.pressure[0].open, 1e-6);
+    assert_close_relative(twice.bulk[0].drift, 2 * once.bulk[0].drift, 0.03);
+    assert_close_relative(twice.bulk[0].open, once.bulk[0].open, 1e-6);
     clear(&made);
 }
 
@@ -314,7 +314,7 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
         states[0].bulk.slope = slope[n];
         states[1].bulk.slope = slope[1 - n];
         assert_ok(mf_inversion_band_find(inversion));
-        drifts[n] = inversion->course.band.drifts.pressure[0];
+        drifts[n] = inversion->course.band.drifts.bulk[0];
         farthest[n] = mf_inversion_band_farthest(inversion);
     }
     // A verification judges each state by the noise of its own samples.
