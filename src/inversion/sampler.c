@@ -107,10 +107,6 @@ enum status mf_sampler_announce(struct sampler *sampler, bool scatter, uint64_t 
                : STATUS_OK;
 }
 
-enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) {
-    return sampler->source->plan ? sampler->source->plan(sampler->own, samples, every) : STATUS_OK;
-}
-
 double mf_sampler_acceptance(const struct sampler *sampler) {
     return sampler->source->acceptance(sampler->own);
 }

@@ -111,9 +111,6 @@ enum sampler_sum {
 enum status mf_sampler_announce(struct sampler *sampler, bool scatter, uint64_t lead,
                                 uint64_t samples, uint64_t every) MUST_USE;
 
-/// So many samples come next, with so many sweeps between them. Fails: as sampling_engine.begin.
-enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) MUST_USE;
-
 /// Sweeps, then a sample: S of each bin of each pair type and of each group, then the sums,
 /// then the integrals of the configuration, then of the bins of each group of local densities the
 /// stresses Σ_i Σ_j r w'(r_ij) of the beads i in them. Where boxes change, pairs have the weight

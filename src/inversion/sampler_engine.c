@@ -23,8 +23,9 @@ struct engine_source {
     const struct molecules *molecules;
     double temperature;
     size_t replica;
-    uint64_t seed, number, lead;
-    bool fresh;
+    uint64_t seed, number;
+    bool fresh;                       ///< nothing has been left to go on from
+    struct engine_piece piece;        ///< that was announced last
     struct running_mean temperatures; ///< of the present piece
     void *frames;                     ///< of it
     double *position[3];              ///< of a frame, by id
@@ -57,9 +58,9 @@ static enum status init(void *own, const struct sampler_system *system,
                           system->seed, &system->bias);
 }
 
-/// The program begins again from where it began.
+/// The program begins again from where it began, and equilibrates, as it was told before.
 static enum status scatter(void *own) {
-    ((struct engine_source *)own)->fresh = true;
+    (void)own;
     return STATUS_OK;
 }
 
@@ -69,44 +70,38 @@ static enum status begin(void *own) {
 }
 
 static enum status equilibrate(void *own, uint64_t sweeps) {
-    ((struct engine_source *)own)->lead = sweeps;
+    (void)own, (void)sweeps;
     return STATUS_OK;
-}
-
-static struct engine_piece describe(const struct engine_source *source, bool fresh, uint64_t lead,
-                                    uint64_t samples, uint64_t every) {
-    return (struct engine_piece){.replica = source->replica,
-                                 .number = source->number,
-                                 .fresh = fresh,
-                                 .seed = source->seed,
-                                 .temperature = source->temperature,
-                                 .potential = source->potential,
-                                 .molecules = source->molecules,
-                                 .lead = lead,
-                                 .frames = samples,
-                                 .every = every};
 }
 
 static enum status announce(void *own, bool scatter, uint64_t lead, uint64_t samples,
                             uint64_t every) {
     struct engine_source *source = own;
     source->number++; // of all replicas, whichever of them will come to begin
-    const struct engine_piece piece =
-        describe(source, scatter || source->fresh, lead, samples, every);
-    return source->engine->announce ? source->engine->announce(source->engine->context, &piece)
-                                    : STATUS_OK;
-}
-
-/// Ask for all samples that come next, at once.
-static enum status plan(void *own, uint64_t samples, uint64_t every) {
-    struct engine_source *source = own;
     source->engine->end(source->frames);
     source->frames = NULL;
-    const struct engine_piece piece = describe(source, source->fresh, source->lead, samples, every);
+    source->piece = (struct engine_piece){.replica = source->replica,
+                                          .number = source->number,
+                                          .fresh = scatter || source->fresh,
+                                          .seed = source->seed,
+                                          .temperature = source->temperature,
+                                          .potential = source->potential,
+                                          .molecules = source->molecules,
+                                          .lead = lead,
+                                          .frames = samples,
+                                          .every = every};
+    return source->engine->announce
+               ? source->engine->announce(source->engine->context, &source->piece)
+               : STATUS_OK;
+}
+
+/// Ask for all samples that were announced, at once.
+static enum status open_frames(struct engine_source *source) {
+    if (source->frames)
+        return STATUS_OK;
     const enum status status =
-        source->engine->begin(source->engine->context, &piece, &source->frames);
+        source->engine->begin(source->engine->context, &source->piece, &source->frames);
     source->fresh = status != STATUS_OK; // from what it has not left nothing goes on
-    source->lead = 0;
     source->temperatures = (struct running_mean){0};
     return status;
 }
@@ -183,7 +178,8 @@ static enum status run(void *own, uint64_t sweeps, struct sampler_pairs *pairs) 
     struct engine_source *source = own;
     struct hybrid *hybrid = &source->hybrid;
     struct engine_sample sample;
-    (void)sweeps; // as they were planned
+    (void)sweeps; // as they were announced
+    TRY(open_frames(source));
     TRY(source->engine->next(source->frames, source->position, &sample));
     place(source);
     TRY(sample.tilted ? count_tilted(source, &sample, pairs) : count(source, &sample.box, pairs));
@@ -223,7 +219,6 @@ const struct sampler_source mf_sampler_engine = {.size = sizeof(struct engine_so
                                                  .begin = begin,
                                                  .equilibrate = equilibrate,
                                                  .announce = announce,
-                                                 .plan = plan,
                                                  .run = run,
                                                  .acceptance = acceptance,
                                                  .particles = particles,
