@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/digest.h"
 #include "base/memory.h"
+#include "base/statistics.h"
 #include "engines/engine.h"
 #include "engines/engine_folder.h"
 #include "forces/molecules.h"
@@ -23,6 +24,7 @@ struct engine_frames {
     size_t beads;
     size_t *atom; ///< of each bead, shape [beads]
     size_t replica;
+    bool fresh; ///< from the beginning
     uint64_t number, taken, wanted;
     uint64_t last; ///< digest of the places in the frame before
     size_t skip;
@@ -133,6 +135,7 @@ static enum status fill(const struct engine_run *run, const struct engine_piece 
     frames->wanted = piece->frames;
     frames->replica = piece->replica;
     frames->number = piece->number;
+    frames->fresh = piece->fresh;
     frames->skip = run->tongue->skip;
     mf_engine_path(folder, run->tongue->frames(run), frames->file);
     if (access(frames->file, F_OK) != 0)
@@ -266,6 +269,43 @@ static enum status find_box(struct engine_frames *frames, struct engine_sample *
     return STATUS_OK;
 }
 
+/// Along an axis, or of a tilted box as much of the vector.
+static double place_along(const struct engine_frames *frames, const struct engine_sample *sample,
+                          size_t atom, int d) {
+    const double *place = frames->frame.position[atom], *row = sample->vectors.inverse[d];
+    if (!sample->tilted)
+        return place[d] / frames->nm;
+    return sample->box.length[d] / frames->nm *
+           (place[0] * row[0] + place[1] * row[1] + place[2] * row[2]);
+}
+
+/// Beads that fill their box have places with a standard deviation of 1/sqrt(12) of it; in another
+/// unit it is a tenth or ten times as much. Those of a beginning have not gone far.
+static enum status check_units(const struct engine_frames *frames,
+                               const struct engine_sample *sample) {
+    static const double least = 0.3, most = 4;
+    double narrowest = INFINITY, widest = 0;
+    for (int d = 0; d < sample->box.dimensions; d++) {
+        struct running_mean places = {0};
+        for (size_t bead = 0; bead < frames->beads; bead++)
+            mf_statistics_add(&places, place_along(frames, sample, frames->atom[bead], d) /
+                                           sample->box.length[d]);
+        const double spread = sqrt(12 * places.squares / places.count);
+        narrowest = fmin(narrowest, spread);
+        widest = fmax(widest, spread);
+    }
+    const bool small = widest < least, large = frames->fresh && narrowest > most;
+    if (frames->beads < 2 || !(small || large))
+        return STATUS_OK;
+    if (frames->run->later)
+        TRY(mf_engine_wait(frames->run, frames->folder));
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: frame %zu: the beads are spread over %.2g of the box along each axis: "
+        "look at the unit of their positions",
+        frames->file, frames->frame.number, small ? widest : narrowest);
+}
+
 /// Samples of replicas, and of times, differ.
 static enum status check_motion(struct engine_frames *frames) {
     uint64_t digest = DIGEST_OF_NOTHING;
@@ -302,16 +342,6 @@ static enum status find_sample(struct engine_frames *frames, struct engine_sampl
     return STATUS_OK;
 }
 
-/// Along an axis, or of a tilted box as much of the vector.
-static double place_along(const struct engine_frames *frames, const struct engine_sample *sample,
-                          size_t atom, int d) {
-    const double *place = frames->frame.position[atom], *row = sample->vectors.inverse[d];
-    if (!sample->tilted)
-        return place[d] / frames->nm;
-    return sample->box.length[d] / frames->nm *
-           (place[0] * row[0] + place[1] * row[1] + place[2] * row[2]);
-}
-
 enum status mf_engine_frames_next(void *memory, double *const position[3],
                                   struct engine_sample *sample) {
     struct engine_frames *frames = memory;
@@ -326,6 +356,8 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
     TRY(check_motion(frames));
     TRY(find_sample(frames, sample));
     TRY(find_box(frames, sample));
+    if (frames->taken == 0)
+        TRY(check_units(frames, sample));
     frames->taken++;
     for (int d = 0; d < sample->box.dimensions; d++) {
         const double length = sample->box.length[d];

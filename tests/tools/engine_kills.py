@@ -4,7 +4,7 @@
 or the engine alone. After --resume its results must have the bits of the fit that nobody killed, and
 no engine may be left running. Slow: some minutes; not part of `make check`.
 
-    tests/tools/engine_kills.py build/mesofit [KILLS] [SEED]
+    [ENGINE="mpirun -np 2 lmp"] tests/tools/engine_kills.py build/mesofit [KILLS] [SEED]
 """
 
 import json
@@ -20,6 +20,7 @@ from pathlib import Path
 
 PROGRAM = os.path.realpath(sys.argv[1])
 KILLS = int(sys.argv[2]) if len(sys.argv) > 2 else 20
+ENGINE = os.environ.get("ENGINE", "lmp")
 RANDOM = random.Random(int(sys.argv[3]) if len(sys.argv) > 3 else 1)
 SETUP = {"box": [5, 5, 5], "time_step": 0.02, "particles": {"count": 250}}
 TRUTH = {"seed": 3, **SETUP, "conservative": {"law": "soft-repulsion", "a": 25},
@@ -36,7 +37,7 @@ WAYS = [signal.SIGINT, signal.SIGTERM, signal.SIGKILL, None]  # None: the engine
 
 
 def fit(folder, *words):
-    return subprocess.Popen([PROGRAM, "fit", "run.json", "-o", folder, "--engine", "lmp", "--threads",
+    return subprocess.Popen([PROGRAM, "fit", "run.json", "-o", folder, "--engine", ENGINE, "--threads",
                              "2", "--quiet", *words], stderr=subprocess.PIPE, text=True)
 
 
