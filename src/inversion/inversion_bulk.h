@@ -37,7 +37,7 @@ double mf_inversion_bulk_shift(const struct inversion_state *state);
 ///   ∂P/∂Φ_b = [⟨∂W/∂Φ_b⟩ − cov(W, S_b)/k_B T]/(dV).
 /// Of the density ρ from how it goes with the pairs, as ∂ρ/∂Φ_b = −cov(ρ, S_b)/k_B T.
 /// Fails: NO_MEMORY. Tested: test_inversion_pressure, against differences of simulations;
-/// test_inversion_density.
+/// test_inversion_response.
 enum status mf_inversion_bulk_slopes(struct inversion_state *state) MUST_USE;
 
 /// The derivative by A of the ramp A (1 − r/r_c).

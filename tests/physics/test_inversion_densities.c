@@ -96,8 +96,7 @@ static void test_slope_of_the_pressure_is_that_of_simulations(void **state) {
     const struct inversion_state *at = inversion.state;
     double predicted = 0;
     for (size_t b = at->grid.pairs_known; b < at->grid.known; b++)
-        predicted +=
-            2 * at->bulk.slope[b] * energy_at(amount, at->grid.r[at->grid.known_point[b]]);
+        predicted += 2 * at->bulk.slope[b] * energy_at(amount, at->grid.r[at->grid.known_point[b]]);
     const double found = pressure_with(amount) - pressure_with(-amount);
     print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at->bulk.value,
                   at->bulk.error, predicted, found);

@@ -87,8 +87,8 @@ static void check_slopes(const struct fluid *fluid, const struct rdf_bins *bins,
                 change_of(kind, at->grid.r[at->grid.known_point[b]], mf_rdf_bins_range(bins));
         const double found = pressure_when_changed(fluid, bins, g, &from, kind, amount) -
                              pressure_when_changed(fluid, bins, g, &from, kind, -amount);
-        print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n",
-                      at->bulk.value, at->bulk.error, predicted, found);
+        print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at->bulk.value,
+                      at->bulk.error, predicted, found);
         assert_close_relative(predicted, found, length_is_long() ? tolerance : tolerance_in_short);
     }
     mf_inversion_destroy(&from);

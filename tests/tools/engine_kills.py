@@ -80,7 +80,9 @@ def kill_once(way, moment):
     elif process.poll() is None:
         process.send_signal(way)
     said = process.communicate()[1]
-    time.sleep(0.3)
+    end = time.monotonic() + 5  # mpirun needs its time
+    while engines() and time.monotonic() < end:
+        time.sleep(0.1)
     left = engines()
     for engine in left:
         os.kill(engine, signal.SIGKILL)
