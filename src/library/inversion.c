@@ -12,11 +12,9 @@
 #include "library/guard.h"
 #include "mesofit/run.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 /// What engine.json of a piece says, and its texts.
 struct asked {
@@ -262,18 +260,13 @@ static void print_frame(const struct mesofit_inversion *inversion, const struct 
 /// The trajectory appears whole or not at all.
 static enum status write_frames(const struct mesofit_inversion *inversion,
                                 const struct piece *piece, const struct mesofit_samples *samples) {
-    char partial[OUTPUT_PATH_SIZE + 16], whole[OUTPUT_PATH_SIZE + FIELD_TEXT_SIZE];
-    snprintf(partial, sizeof partial, "%s/partial", piece->folder);
-    snprintf(whole, sizeof whole, "%s/%s", piece->folder, piece->asked.trajectory);
-    FILE *stream = fopen(partial, "w");
-    if (stream == NULL)
-        return mf_status_fail(STATUS_IO, "%s: cannot be written: %s", partial, strerror(errno));
+    struct output output;
+    char path[OUTPUT_PATH_SIZE + FIELD_TEXT_SIZE];
+    snprintf(path, sizeof path, "%s/%s", piece->folder, piece->asked.trajectory);
+    TRY(mf_output_open(&output, path));
     for (size_t frame = 0; frame < (size_t)piece->told.frames; frame++)
-        print_frame(inversion, piece, samples, frame, stream);
-    const bool written = ferror(stream) == 0;
-    return fclose(stream) == 0 && written && rename(partial, whole) == 0
-               ? STATUS_OK
-               : mf_status_fail(STATUS_IO, "%s: cannot be written: %s", whole, strerror(errno));
+        print_frame(inversion, piece, samples, frame, output.stream);
+    return mf_output_commit(&output);
 }
 
 /// sample.json: what is known beside the frames.
