@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The truth by LAMMPS, its g(r) and density by measure, and the potential that has both.
 cd "$(dirname "$0")" || exit 1
 set -e
