@@ -183,7 +183,7 @@ static enum status result_of_all(const void *const *states, size_t count,
 static const struct observable_target targets[] = {
     {.name = "pressure", .summary = "P", .form = OBSERVABLE_NUMBER, .unit = "k_B T_0/lambda^d"},
     {.name = "density",
-     .summary = "beads by volume at constant pressure, with another engine",
+     .summary = "beads by volume, of another engine",
      .form = OBSERVABLE_NUMBER,
      .unit = "1/lambda^d"},
     {.name = NULL}};
