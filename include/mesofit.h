@@ -4,6 +4,7 @@
 #define MESOFIT_H
 
 #include "mesofit/fit.h"
+#include "mesofit/inversion.h"
 #include "mesofit/optimiser.h"
 #include "mesofit/result.h"
 #include "mesofit/run.h"

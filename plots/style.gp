@@ -158,10 +158,12 @@ dimensions = has("used.json") && int(system("grep -c '\"dimensions\":.*2' used.j
 # What a target is called, and the unit of its error.
 target_label(target) = target eq "rdf" ? "{/:Italic g}" : target eq "etd" ? "{/:Italic E}" : \
     target eq "vacf" ? "VACF" : target eq "msd" ? "MSD" : \
-    target eq "diffusion" ? "{/:Italic D}" : target eq "pressure" ? "{/:Italic p}" : target
+    target eq "diffusion" ? "{/:Italic D}" : target eq "pressure" ? "{/:Italic p}" : \
+    target eq "density" ? "{/:Italic ρ}" : target
 target_unit(target) = target eq "vacf" ? " / ({/:Italic λ}^2/{/:Italic τ}^2)" : \
     target eq "msd" ? " / {/:Italic λ}^2" : target eq "diffusion" ? " / ({/:Italic λ}^2/{/:Italic τ})" : \
-    target eq "pressure" ? sprintf(" / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^%d)", dimensions) : ""
+    target eq "pressure" ? sprintf(" / ({/:Italic k}_B{/:Italic T}_0/{/:Italic λ}^%d)", dimensions) : \
+    target eq "density" ? sprintf(" {/:Italic λ}^%d", dimensions) : ""
 rmse_of(target) = "rmse of " . target_label(target) . target_unit(target)
 
 # What the column "error" of a fit is, from the targets that used.json says are fitted.

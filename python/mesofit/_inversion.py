@@ -70,7 +70,7 @@ class Piece:
         return tables
 
     def tell(self, positions: Any, *, pressure: Any = None, temperature: Any = None,
-             pair_energy: Any = None) -> None:
+             pair_energy: Any = None, boxes: Any = None) -> None:
         """The samples.
 
         Parameters
@@ -79,6 +79,8 @@ class Piece:
             In the units of the run file, beads in the order of the scene's types.
         pressure, temperature, pair_energy : array, shape (frames,), optional
             Of each frame: what is known of it besides.
+        boxes : array, shape (frames, dimensions), optional
+            Edges of each frame, at constant pressure; as asked for if none are given.
 
         Raises
         ------
@@ -96,15 +98,15 @@ class Piece:
                                         ("pair_energy", pair_energy)) if values is not None}
         if any(len(values) != wanted for values in numbers.values()):
             raise InputError(f"expected {wanted} numbers, one of each frame")
-        edges = np.append(box, np.ones(3 - len(box)))
-        lattice = " ".join("%.12g" % x for x in np.diag(edges).ravel())
-        head = (f'{places.shape[1]}\nLattice="{lattice}" Properties=species:S:1:pos:R:3 '
-                f'{self._units}\n')
+        edges = np.broadcast_to(box if boxes is None else np.asarray(boxes, dtype=float),
+                                (len(places), len(box)))
         (self.folder / "sample.json").write_text(json.dumps(numbers))
         with (self.folder / "partial").open("w") as out:
-            for frame in places[:wanted]:
+            for frame, edge in zip(places[:wanted], edges):
                 frame = np.pad(frame, ((0, 0), (0, 3 - len(box))))
-                out.write(head)
+                lattice = np.diag(np.append(edge, np.ones(3 - len(box)))).ravel()
+                out.write(f'{len(frame)}\nLattice="{" ".join("%.12g" % x for x in lattice)}" '
+                          f'Properties=species:S:1:pos:R:3 {self._units}\n')
                 out.writelines("%s %.10g %.10g %.10g\n" % (name, *place)
                                for name, place in zip(self._names(len(frame)), frame))
         (self.folder / "partial").rename(self.folder / self.asked["trajectory"])  # whole or not at all

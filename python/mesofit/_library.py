@@ -185,6 +185,9 @@ FUNCTIONS = {
 UNUSED = {
     "mesofit_scene_default", "mesofit_simulation_create", "mesofit_simulation_open",
     "mesofit_fit_options_default", "mesofit_fit_create", "mesofit_rdf_plan_default",
+    "mesofit_inversion_open", "mesofit_inversion_free", "mesofit_inversion_pieces",
+    "mesofit_inversion_piece", "mesofit_inversion_potentials", "mesofit_inversion_tell",
+    "mesofit_inversion_go_on",
 }
 
 

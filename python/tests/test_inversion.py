@@ -64,3 +64,24 @@ def test_wrong_samples_are_refused(tmp_path):
     with pytest.raises(mesofit.InputError, match="one of each frame"):
         piece.tell(gas(piece), pressure=1.0)
     assert not piece.told
+
+
+def test_positions_in_another_unit_are_noticed(tmp_path):
+    for factor in (0.1, 10):
+        inversion = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out", force=True)
+        for piece in inversion.pieces:
+            piece.tell(factor * gas(piece))
+        with pytest.raises(mesofit.InputError, match="look at the unit of their positions"):
+            inversion.go_on()
+
+
+def test_boxes_of_constant_pressure_are_told(tmp_path):
+    run = run_file(tmp_path)
+    run["target"]["density"] = {"value": 200 / 64, "error": 0.05}
+    inversion = mesofit.Inversion(run, folder=tmp_path / "out")
+    for piece in inversion.pieces:
+        edges = 4 + 0.01 * np.random.default_rng(piece.asked["seed"]).normal(
+            size=(piece.asked["frames"], 1)) * np.ones(3)
+        piece.tell(gas(piece) / 4 * edges[:, None, :], boxes=edges)
+    inversion.go_on()
+    assert all(piece.asked["piece"] == 2 for piece in inversion.pieces)

@@ -9,6 +9,7 @@ enum spent_on {
     SPENT_ALGEBRA,       ///< what an inversion makes of its samples
     SPENT_VERIFICATION,
     SPENT_FIGURES, ///< by the programs that draw them
+    SPENT_ENGINE,  ///< by another engine that samples
     SPENT_KINDS
 };
 

@@ -29,6 +29,7 @@ enum { STATUS_MESSAGE_SIZE = 8192 };
 #define STATUS_LENGTH STATUS_IN("lambda")
 #define STATUS_AREA STATUS_IN("lambda^2")
 #define STATUS_VOLUME STATUS_IN("lambda^d")
+#define STATUS_DENSITY STATUS_IN("1/lambda^d")
 #define STATUS_WAVE_NUMBER STATUS_IN("1/lambda")
 #define STATUS_TIME STATUS_IN("tau")
 #define STATUS_SPEED STATUS_IN("lambda/tau")

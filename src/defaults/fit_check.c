@@ -134,8 +134,9 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
         return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find numbers",
                               file, fit->method->name);
     for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
-        if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != mf_kirkwood_buff_kind() &&
-            !is_inverted(fit, kind) && targets_ask(&fit->problem.targets, kind))
+        if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != TARGET_DENSITY &&
+            kind != mf_kirkwood_buff_kind() && !is_inverted(fit, kind) &&
+            targets_ask(&fit->problem.targets, kind))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: target.%s.fitted: \"%s\" does not fit it; %s do, and \"no\" "
                                   "compares it with the result",

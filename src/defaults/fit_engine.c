@@ -3,6 +3,7 @@
 
 #include "defaults/fit_states.h"
 #include "forces/many_body.h"
+#include "observe/kirkwood_buff_observable.h"
 
 #include <string.h>
 
@@ -96,8 +97,30 @@ static enum status refuse(const char *file, const char *why) {
     return mf_status_fail(STATUS_BAD_INPUT, "%s: engine: %s", file, why);
 }
 
+/// A density is one of constant pressure, which an engine of the user's own holds.
+static enum status check_density(const struct fit_file *fit, const char *file) {
+    const char *why = NULL;
+    if (!targets_ask(&fit->problem.compared, TARGET_DENSITY))
+        return STATUS_OK;
+    if (fit->engine.kind == ENGINE_NONE)
+        why = "mesofit samples at constant volume, where it is that of the scene; an \"engine\" "
+              "that holds the pressure finds one";
+    else if (!mf_fit_engine_knows_more(fit))
+        why = "the LAMMPS input that is written is of constant volume; give one of your own with "
+              "`fix npt` as \"input\" of \"engine\"";
+    else if (targets_ask(&fit->problem.targets, TARGET_PRESSURE))
+        why = "where it is a target the engine holds the pressure: leave \"pressure\" out";
+    else if (targets_ask(&fit->problem.targets, mf_kirkwood_buff_kind()))
+        why = "integrals of Kirkwood and Buff are those of one box; with \"fitted\": \"no\" "
+              "they are compared";
+    else if (fit->verification.by == VERIFY_BY_MESOFIT)
+        why = "\"verification\" by mesofit is at constant volume";
+    return why ? mf_status_fail(STATUS_BAD_INPUT, "%s: target.density: %s", file, why) : STATUS_OK;
+}
+
 enum status mf_fit_engine_check(const struct fit_file *fit, const char *file) {
     const struct simulation_setup *setup = &fit->scene.setup;
+    TRY(check_density(fit, file));
     if (fit->engine.kind == ENGINE_NONE)
         return STATUS_OK;
     if (fit->method->kind != INVERSE_INVERSION)

@@ -4,6 +4,7 @@
 #include "base/visible.h"
 
 #include <math.h>
+#include <string.h>
 
 static bool is_positive(double value) {
     return isfinite(value) && value > 0;
@@ -65,4 +66,16 @@ enum status mf_simulation_change(struct simulation *simulation,
         TRY(mf_pair_memory_change(&simulation->memory, change->temperature, change->time_step));
     // Forces have friction and noise in them, or the pairs that the next step begins with.
     return mf_simulation_compute_forces(simulation, 0);
+}
+
+enum status mf_simulation_set_box(struct simulation *simulation, const struct box *box) {
+    struct particles *particles = &simulation->particles;
+    const double skin = simulation->neighbours.skin;
+    if (memcmp(particles->box.length, box->length, sizeof box->length) == 0)
+        return STATUS_OK;
+    particles->box = *box;
+    mf_neighbours_clear(&simulation->neighbours);
+    TRY(mf_neighbours_init(&simulation->neighbours, NEIGHBOURS_HALF, box, particles->count,
+                           mf_simulation_range(&simulation->setup), skin));
+    return mf_neighbours_sort_and_build(&simulation->neighbours, particles);
 }

@@ -22,3 +22,8 @@ enum status mf_simulation_check_change(const struct simulation *simulation,
 /// Fails: as mf_simulation_check_change; NO_MEMORY. Tested: test_simulation_change.
 enum status mf_simulation_change(struct simulation *simulation,
                                  const struct simulation_change *change) MUST_USE;
+
+/// Another box for the particles where they are, as frames of constant pressure have it; that of
+/// the setup stays. The forces are those of before. Fails: BAD_INPUT for a box below twice the
+/// cutoff, as mf_neighbours_init; NO_MEMORY. Tested: test_simulation_box.
+enum status mf_simulation_set_box(struct simulation *simulation, const struct box *box) MUST_USE;

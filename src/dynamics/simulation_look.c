@@ -36,8 +36,8 @@ static enum status look_at(const struct simulation *simulation, struct transfer 
     look->law.histogram = NULL;
     look->law.transfer = transfer;
     CHECK(copy_particles(&simulation->particles, &look->particles));
-    CHECK(mf_neighbours_init(&look->neighbours, NEIGHBOURS_HALF, &setup->box, look->particles.count,
-                             mf_simulation_range(setup), 0));
+    CHECK(mf_neighbours_init(&look->neighbours, NEIGHBOURS_HALF, &look->particles.box,
+                             look->particles.count, mf_simulation_range(setup), 0));
     for (int k = 0; k < simulation->interactions; k++)
         CHECK(mf_simulation_add_interaction(look, &simulation->interaction[k].choice));
     // Without a skin the list is stale, and built there.

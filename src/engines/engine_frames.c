@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/digest.h"
 #include "base/memory.h"
+#include "base/statistics.h"
 #include "engines/engine.h"
 #include "engines/engine_folder.h"
+#include "forces/molecules.h"
+#include "defaults/fit_engine.h"
+#include "trajectory/frame_box.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,6 +24,7 @@ struct engine_frames {
     size_t beads;
     size_t *atom; ///< of each bead, shape [beads]
     size_t replica;
+    bool fresh; ///< from the beginning
     uint64_t number, taken, wanted;
     uint64_t last; ///< digest of the places in the frame before
     size_t skip;
@@ -92,6 +97,10 @@ static enum status find_atoms(const struct engine_run *run, struct engine_frames
 
 // Frames ------------------------------------------------------------------------------------------
 
+/// By which a box may differ from that of the scene and be the same, as a part of its edges; and
+/// beyond which it is that of another system, or in other units.
+static const double rounding = 1e-4, another = 0.5;
+
 static enum status open_trajectory(const struct engine_run *run, struct engine_frames *frames) {
     const struct units *units = &run->fit->scene.units;
     // LAMMPS is given real units where there is a scale, a command those of the run file.
@@ -126,6 +135,7 @@ static enum status fill(const struct engine_run *run, const struct engine_piece 
     frames->wanted = piece->frames;
     frames->replica = piece->replica;
     frames->number = piece->number;
+    frames->fresh = piece->fresh;
     frames->skip = run->tongue->skip;
     mf_engine_path(folder, run->tongue->frames(run), frames->file);
     if (access(frames->file, F_OK) != 0)
@@ -158,32 +168,142 @@ enum status mf_engine_frames_open(struct engine_run *run, const struct engine_pi
     return status;
 }
 
-/// The box must be that of the scene, as g* is normalised by it.
-static enum status check_box(const struct engine_frames *frames) {
-    static const double rounding = 1e-4;
-    const struct trajectory_frame *frame = &frames->frame;
-    for (int a = 0; frame->has_box && a < frames->box->dimensions; a++)
+static enum status check_periodic(const struct trajectory_frame *frame, int dimensions) {
+    for (int a = 0; frame->has_box && a < dimensions; a++)
         if (!frame->periodic[a])
             return mf_status_fail(
                 STATUS_BAD_INPUT,
                 "%s: frame %zu: the box is not periodic along %c, and g(r) is that "
                 "of periodic boxes",
-                frames->file, frame->number, 'x' + a);
-    for (int a = 0; frame->has_box && a < frames->box->dimensions; a++)
-        for (int b = 0; b < frames->box->dimensions; b++) {
-            const double wanted = a == b ? frames->box->length[a] * frames->nm : 0;
-            if (fabs(frame->box[a][b] - wanted) > rounding * frames->box->length[a] * frames->nm)
-                return mf_status_fail(
-                    STATUS_BAD_INPUT,
-                    "%s: frame %zu: the box is %.6g by %.6g by %.6g" STATUS_LENGTH
-                    " where the scene's is %.6g by %.6g by %.6g" STATUS_LENGTH
-                    "; \"box\" of the scene must be that of the engine, rectangular and constant, "
-                    "and the frames in their format's units",
-                    frames->file, frame->number, frame->box[0][0] / frames->nm,
-                    frame->box[1][1] / frames->nm, frame->box[2][2] / frames->nm,
-                    frames->box->length[0], frames->box->length[1], frames->box->length[2]);
-        }
+                frame->file, frame->number, 'x' + a);
     return STATUS_OK;
+}
+
+static enum status refuse_box(const struct engine_frames *frames, const char *why) {
+    const struct trajectory_frame *frame = &frames->frame;
+    const double nm = frames->nm, *scene = frames->box->length;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: frame %zu: the box is %.6g by %.6g by %.6g" STATUS_LENGTH
+                          " where the scene's is %.6g by %.6g by %.6g" STATUS_LENGTH "; %s",
+                          frames->file, frame->number, frame->box[0][0] / nm, frame->box[1][1] / nm,
+                          frame->box[2][2] / nm, scene[0], scene[1], scene[2], why);
+}
+
+static bool is_tilted(const struct engine_frames *frames) {
+    bool tilted = false;
+    for (int a = 0; a < frames->box->dimensions; a++)
+        for (int b = 0; b < frames->box->dimensions; b++)
+            tilted = tilted || (a != b && fabs(frames->frame.box[a][b]) >
+                                              rounding * frames->box->length[a] * frames->nm);
+    return tilted;
+}
+
+/// What counts molecules, and verifies, knows rectangular boxes.
+static enum status refuse_tilted(const struct engine_frames *frames) {
+    const struct fit_file *fit = frames->run->fit;
+    const struct simulation_setup *setup = &fit->scene.setup;
+    const int by = fit->verification.by;
+    if (frames->box->dimensions == 2 || mf_molecules_find(setup->interaction, setup->interactions))
+        return refuse_box(frames, "it is tilted, which a box of molecules, or of two dimensions, "
+                                  "may not be");
+    if (by == VERIFY_BY_ENGINE || (by == VERIFY_BY_AUTO && mf_fit_engine_knows_more(fit)))
+        return refuse_box(frames, "it is tilted: what is found in such a box is verified by "
+                                  "mesofit, in a rectangular one, if the scene has all forces: "
+                                  "\"verification\": {\"by\": \"mesofit\"}");
+    return STATUS_OK;
+}
+
+/// In λ, with the diagonal as the edges of a box of the same volume.
+static enum status find_vectors(struct engine_frames *frames, struct engine_sample *sample) {
+    struct box_vectors *v = &sample->vectors;
+    TRY(refuse_tilted(frames));
+    TRY(mf_frame_box_find(v, &frames->frame));
+    for (int a = 0; a < 3; a++) {
+        sample->box.length[a] = v->edge[a][a] / frames->nm;
+        v->height[a] /= frames->nm;
+        for (int b = 0; b < 3; b++) {
+            v->edge[a][b] /= frames->nm;
+            v->inverse[a][b] *= frames->nm;
+        }
+    }
+    v->volume /= frames->nm * frames->nm * frames->nm;
+    return STATUS_OK;
+}
+
+/// Whether the box is not that of the scene: its edges, or the volume of one that is tilted; at
+/// constant pressure by much.
+static bool is_another(const struct engine_frames *frames, const struct engine_sample *sample,
+                       bool changes) {
+    const struct box *scene = frames->box, *box = &sample->box;
+    const double allowed = changes ? another : rounding;
+    bool is = sample->tilted && fabs(mf_box_volume(box) / mf_box_volume(scene) - 1) > 3 * allowed;
+    for (int d = 0; d < scene->dimensions && !sample->tilted; d++)
+        is = is || fabs(box->length[d] / scene->length[d] - 1) > allowed;
+    return is;
+}
+
+/// At constant volume the box is that of the scene; at constant pressure, where the density is a
+/// target, it is that of the frame. In a tilted one of the same volume g(r) is the same.
+static enum status find_box(struct engine_frames *frames, struct engine_sample *sample) {
+    const struct trajectory_frame *frame = &frames->frame;
+    const bool changes = targets_ask(&frames->run->fit->problem.compared, TARGET_DENSITY);
+    sample->box = *frames->box;
+    sample->tilted = false;
+    TRY(check_periodic(frame, sample->box.dimensions));
+    if (!frame->has_box)
+        return changes ? mf_status_fail(STATUS_BAD_INPUT,
+                                        "%s: target.density: its frames tell no box", frames->file)
+                       : STATUS_OK;
+    sample->tilted = is_tilted(frames);
+    for (int d = 0; d < sample->box.dimensions; d++)
+        sample->box.length[d] = frame->box[d][d] / frames->nm;
+    if (sample->tilted)
+        TRY(find_vectors(frames, sample));
+    if (is_another(frames, sample, changes))
+        return refuse_box(
+            frames, changes ? "it must be of about that density, and in the units of its format"
+                            : "\"box\" of the scene must be that of the engine, constant unless "
+                              "\"density\" is a target, and the frames in their format's units");
+    if (!changes && !sample->tilted)
+        sample->box = *frames->box;
+    return STATUS_OK;
+}
+
+/// Along an axis, or of a tilted box as much of the vector.
+static double place_along(const struct engine_frames *frames, const struct engine_sample *sample,
+                          size_t atom, int d) {
+    const double *place = frames->frame.position[atom], *row = sample->vectors.inverse[d];
+    if (!sample->tilted)
+        return place[d] / frames->nm;
+    return sample->box.length[d] / frames->nm *
+           (place[0] * row[0] + place[1] * row[1] + place[2] * row[2]);
+}
+
+/// Beads that fill their box have places with a standard deviation of 1/sqrt(12) of it; in another
+/// unit it is a tenth or ten times as much. Those of a beginning have not gone far.
+static enum status check_units(const struct engine_frames *frames,
+                               const struct engine_sample *sample) {
+    static const double least = 0.3, most = 4;
+    double narrowest = INFINITY, widest = 0;
+    for (int d = 0; d < sample->box.dimensions; d++) {
+        struct running_mean places = {0};
+        for (size_t bead = 0; bead < frames->beads; bead++)
+            mf_statistics_add(&places, place_along(frames, sample, frames->atom[bead], d) /
+                                           sample->box.length[d]);
+        const double spread = sqrt(12 * places.squares / places.count);
+        narrowest = fmin(narrowest, spread);
+        widest = fmax(widest, spread);
+    }
+    const bool small = widest < least, large = frames->fresh && narrowest > most;
+    if (frames->beads < 2 || !(small || large))
+        return STATUS_OK;
+    if (frames->run->later)
+        TRY(mf_engine_wait(frames->run, frames->folder));
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: frame %zu: the beads are spread over %.2g of the box along each axis: "
+        "look at the unit of their positions",
+        frames->file, frames->frame.number, small ? widest : narrowest);
 }
 
 /// Samples of replicas, and of times, differ.
@@ -215,10 +335,10 @@ static enum status find_sample(struct engine_frames *frames, struct engine_sampl
     if (!known && numbers->step)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: no numbers of step %lld are beside it",
                               frames->file, (long long)frames->frame.step);
-    *sample =
-        (struct engine_sample){known && numbers->temperature ? numbers->temperature[row] : NAN,
-                               known && numbers->pressure ? numbers->pressure[row] : NAN,
-                               known && numbers->energy ? numbers->energy[row] : NAN};
+    *sample = (struct engine_sample){
+        .temperature = known && numbers->temperature ? numbers->temperature[row] : NAN,
+        .pressure = known && numbers->pressure ? numbers->pressure[row] : NAN,
+        .energy = known && numbers->energy ? numbers->energy[row] : NAN};
     return STATUS_OK;
 }
 
@@ -233,14 +353,16 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
         if (!more)
             return fail_short(frames);
     }
-    TRY(check_box(frames));
     TRY(check_motion(frames));
     TRY(find_sample(frames, sample));
+    TRY(find_box(frames, sample));
+    if (frames->taken == 0)
+        TRY(check_units(frames, sample));
     frames->taken++;
-    for (int d = 0; d < frames->box->dimensions; d++) {
-        const double length = frames->box->length[d];
+    for (int d = 0; d < sample->box.dimensions; d++) {
+        const double length = sample->box.length[d];
         for (size_t bead = 0; bead < frames->beads; bead++) {
-            const double x = frame->position[frames->atom[bead]][d] / frames->nm;
+            const double x = place_along(frames, sample, frames->atom[bead], d);
             if (!isfinite(x))
                 return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: a position is no number",
                                       frames->file, frame->number);

@@ -34,7 +34,7 @@ static bool may_be_in_basin(const struct inversion *inversion) {
 static enum status careful_step(struct inversion_state *state, double *step) {
     if (state->low_rank.count > 0) {
         TRY(mf_inversion_low_rank_step(state, step));
-        mf_inversion_pressure_add_ramp(state, step);
+        mf_inversion_bulk_add_ramp(state, step);
         return STATUS_OK;
     }
     if (state->grid.groups == 0 && mf_inversion_knows_intramolecular(state))

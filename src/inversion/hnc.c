@@ -35,7 +35,7 @@ enum status mf_hnc_step(const struct inversion_state *state, double *step) {
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] -=
             state->problem->scene.temperature * indirect[grid->known_bin[n]];
-    mf_inversion_pressure_add_ramp(state, step); // the last: it is for the pressure of the whole
+    mf_inversion_bulk_add_ramp(state, step); // the last: it is for the pressure of the whole
 done:
     mf_memory_free(target);
     mf_memory_free(difference);

@@ -59,7 +59,7 @@ static void keep_within_noise(const struct inversion_state *state, double *step)
 void mf_ibi_step(const struct inversion_state *state, double *step) {
     mf_ibi_logarithms(state, step);
     keep_within_noise(state, step);
-    mf_inversion_pressure_add_ramp(state, step);
+    mf_inversion_bulk_add_ramp(state, step);
 }
 
 static enum status update(struct inversion *inversion, double *extra) {

@@ -65,14 +65,13 @@ static enum status step_low_rank(struct inversion *inversion, double *step) {
     if (inversion->states > 1)
         return mf_inversion_states_low_rank_step(first, inversion->states, step);
     TRY(mf_inversion_low_rank_step(first, step));
-    mf_inversion_pressure_add_ramp(first, step);
+    mf_inversion_bulk_add_ramp(first, step);
     return STATUS_OK;
 }
 
 enum status mf_imc_step(struct inversion *inversion, double *step, double extra[3]) {
     enum status status = STATUS_OK;
     const struct inversion_state *first = inversion->state;
-    const struct targets *targets = &inversion->problem->targets;
     const struct inversion_equations *equations = &inversion->equations;
     const size_t *point = first->grid.known_point;
     struct imc_system system = first->grid.groups > 0 ? equations->of_response : equations->system;
@@ -80,9 +79,9 @@ enum status mf_imc_step(struct inversion *inversion, double *step, double extra[
     double *x = NULL, *phi = NULL, *reference = NULL;
     if (mf_inversion_is_low_rank(inversion))
         return step_low_rank(inversion, step);
-    if (targets_ask(targets, TARGET_PRESSURE) && !equations->reduced) {
-        system.constraint = first->pressure.slope;
-        system.wanted = *targets->target[TARGET_PRESSURE].value - first->pressure.value;
+    if (mf_inversion_bulk_is_asked(first) && !equations->reduced) {
+        system.constraint = first->bulk.slope;
+        system.wanted = mf_inversion_bulk_missing(first);
     }
     NEW_ARRAY(x, system.size);
     NEW_ARRAY(phi, system.size);

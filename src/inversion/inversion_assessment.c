@@ -30,8 +30,9 @@ double mf_inversion_assessment_noises(const struct inversion_assessment *assessm
                                       const struct target_distance distance[TARGETS]) {
     double sum = 0;
     for (int kind = 0; kind < TARGETS; kind++) {
-        const double noise =
-            kind == TARGET_PRESSURE ? assessment->pressure_reach : assessment->distance[kind].noise;
+        const double noise = kind == TARGET_PRESSURE || kind == TARGET_DENSITY
+                                 ? assessment->bulk_reach
+                                 : assessment->distance[kind].noise;
         if (targets_ask(targets, kind) && noise > 0)
             sum += pow(distance[kind].rms / noise, 2);
     }

@@ -32,11 +32,11 @@ struct inversion_assessment {
     struct inversion_section section[INVERSION_MAX_SECTIONS];
     int sections;
     struct target_distance distance[TARGETS]; ///< from what is asked for
-    double pressure_reach; ///< how near to it a step may be asked to come, and is judged by:
-                           ///< mf_inversion_pressure_measure [k_B T_0/λ^d]
-    double own_noise;      ///< by the samples alone, rms, of the noisiest section
-    double misfit;         ///< χ² of the excess by bin
-    double disagreement;   ///< of the replicas, mf_replicas_disagreement
+    double bulk_reach;   ///< how near to it a step may be asked to come, and is judged by:
+                         ///< mf_inversion_bulk_measure
+    double own_noise;    ///< by the samples alone, rms, of the noisiest section
+    double misfit;       ///< χ² of the excess by bin
+    double disagreement; ///< of the replicas, mf_replicas_disagreement
     struct inversion_unequilibrated unequilibrated; ///< `found`: the samples are not those of
                                                     ///< equilibrium, and there are to be no more
     bool unstable;   ///< there are none: another engine could not sample the potential, and all
@@ -53,7 +53,7 @@ mf_inversion_assessment_worst(const struct inversion_assessment *assessment);
 bool mf_inversion_assessment_is_precise(const struct inversion_assessment *assessment);
 
 /// Distances from all targets together, each in units of the noise of these samples, that from the
-/// pressure of what it can be asked for.
+/// pressure, or the density, of what it can be asked for.
 double mf_inversion_assessment_noises(const struct inversion_assessment *assessment,
                                       const struct targets *targets,
                                       const struct target_distance distance[TARGETS]);

@@ -216,10 +216,9 @@ static void find_drifts(struct inversion *inversion, const double *step, const d
     struct inversion_band_drifts *drifts = &inversion->course.band.drifts;
     drifts->ramp = find_drift(inversion, weight, step, scratch);
     for (size_t s = 0; s < inversion->states; s++)
-        drifts->pressure[s] =
-            find_drift(inversion, inversion->state[s].pressure.slope, step, scratch);
+        drifts->bulk[s] = find_drift(inversion, inversion->state[s].bulk.slope, step, scratch);
     inversion->course.band.ramp.drift = drifts->ramp.drift;
-    inversion->course.band.ramp.pressure_drift = drifts->pressure[0].drift;
+    inversion->course.band.ramp.bulk_drift = drifts->bulk[0].drift;
 }
 
 /// The way of A counts as an error: Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ.
@@ -240,15 +239,16 @@ static void add_walk(struct inversion *inversion, double *scratch) {
     add_square(inversion, 1, scratch);
 }
 
-/// A pressure with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) + σ_P² k kᵀ with
-/// k = u/(p·u).
-static void add_pressure(struct inversion *inversion, double *scratch) {
-    const double *slope = inversion->state->pressure.slope;
+/// A pressure, or a density, with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) +
+/// σ_P² k kᵀ with k = u/(p·u).
+static void add_bulk(struct inversion *inversion, double *scratch) {
+    const double *slope = inversion->state->bulk.slope;
     const size_t n = inversion_grid(inversion)->known;
-    inversion->course.band.ramp.pressure_open = sqrt(spread(inversion, slope, scratch));
-    if (!targets_ask(&inversion->problem->targets, TARGET_PRESSURE) || inversion->equations.reduced)
+    inversion->course.band.ramp.bulk_open = sqrt(spread(inversion, slope, scratch));
+    if (!mf_inversion_bulk_is_asked(inversion->state) || inversion->equations.reduced)
         return; // it is among the equations
-    const double noise = inversion->assessment.distance[TARGET_PRESSURE].noise;
+    const double noise =
+        inversion->assessment.distance[mf_inversion_bulk_kind(inversion->state)].noise;
     const double along = multiply(inversion->course.band.inverse, n, slope, scratch);
     for (size_t a = 0; a < n; a++)
         scratch[a] /= along;
@@ -275,7 +275,7 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
         mf_potential_grid_close(grid, g, band->without_ramp);
     }
     band->ramp.error = sqrt(ramp_variance);
-    band->ramp.pressure = mf_inversion_pressure_ramp_slope(inversion->state);
+    band->ramp.bulk = mf_inversion_bulk_ramp_slope(inversion->state);
     band->ramp.bins = (double)n;
 }
 
@@ -321,13 +321,12 @@ done:
 }
 
 struct inversion_band_drift mf_inversion_band_farthest(const struct inversion *inversion) {
-    const struct inversion_band_drift *pressure = inversion->course.band.drifts.pressure;
+    const struct inversion_band_drift *bulk = inversion->course.band.drifts.bulk;
     size_t farthest = 0;
     for (size_t s = 1; s < inversion->states; s++)
-        if (fabs(pressure[s].drift) * pressure[farthest].open >
-            fabs(pressure[farthest].drift) * pressure[s].open)
+        if (fabs(bulk[s].drift) * bulk[farthest].open > fabs(bulk[farthest].drift) * bulk[s].open)
             farthest = s;
-    return pressure[farthest];
+    return bulk[farthest];
 }
 
 double mf_inversion_band_birge(const struct inversion_assessment *assessment) {
@@ -405,7 +404,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
         CHECK(take_conventions_off(inversion, band->covariance));
     }
     add_drift(inversion, weight, scratch);
-    add_pressure(inversion, scratch);
+    add_bulk(inversion, scratch);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));

@@ -63,8 +63,8 @@ struct inversion_band {
         *flat; ///< inverse_step.curve_flat, shape [INVERSE_FLAT, points] of pairs, then of groups
     struct inverse_ramp ramp;
     struct inversion_band_drifts {
-        struct inversion_band_drift ramp, pressure[INVERSE_MAX_STATES];
-    } drifts; ///< of A, and of the pressure of each state [k_B T_0/λ^d]
+        struct inversion_band_drift ramp, bulk[INVERSE_MAX_STATES];
+    } drifts; ///< of A, and of what the ramp moves in each state (inversion/inversion_bulk.h)
 };
 
 /// Standard deviation of ln λ of a Poisson distribution with the mean λ of which so many were

@@ -25,7 +25,7 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
     double mean = 0, now = 0;
     if (samples <= 0 || samples < enough_near * first->replicas.counts.count ||
         !((const struct inversion_rule *)inversion->method->own)->memoryless ||
-        targets_ask(&inversion->problem->targets, TARGET_PRESSURE))
+        mf_inversion_bulk_is_asked(first))
         return false;
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
@@ -144,7 +144,7 @@ static bool meets_targets(const struct inversion *inversion) {
 /// Whether a method that takes the most probable step must go all of the way that g hardly sees.
 static bool must_settle(const struct inversion *inversion) {
     return inversion->course.most_probable && inversion_grid(inversion)->pairs > 0 &&
-           !targets_ask(&inversion->problem->targets, TARGET_PRESSURE);
+           !mf_inversion_bulk_is_asked(inversion->state);
 }
 
 /// Whether the sum of the last `count` drifts of a number is a part of so many errors.
@@ -158,14 +158,14 @@ static bool cancels(double sum, uint32_t count, const struct inversion_band_drif
 static bool has_settled(const struct inversion *inversion, uint32_t min) {
     const struct inversion_band_drifts *last = &inversion->course.band.drifts;
     const struct inversion_drifts *drifts = &inversion->course.progress.drifts;
-    double ramp = 0, pressure[INVERSE_MAX_STATES] = {0};
+    double ramp = 0, bulk[INVERSE_MAX_STATES] = {0};
     for (uint32_t k = 1; k <= drifts->near && k <= INVERSION_MAX_DRIFTS; k++) {
         const uint32_t place = (drifts->near - k) % INVERSION_MAX_DRIFTS;
         ramp += drifts->ramp[place];
         bool settled = k >= min && cancels(ramp, k, &last->ramp);
         for (size_t s = 0; s < inversion->states; s++) {
-            pressure[s] += drifts->pressure[place][s];
-            settled = settled && cancels(pressure[s], k, &last->pressure[s]);
+            bulk[s] += drifts->bulk[place][s];
+            settled = settled && cancels(bulk[s], k, &last->bulk[s]);
         }
         if (settled)
             return true;
@@ -178,7 +178,7 @@ static void record_drifts(const struct inversion *inversion, struct inversion_dr
     const uint32_t place = drifts->near % INVERSION_MAX_DRIFTS;
     drifts->ramp[place] = last->ramp.drift;
     for (size_t s = 0; s < inversion->states; s++)
-        drifts->pressure[place][s] = last->pressure[s].drift;
+        drifts->bulk[place][s] = last->bulk[s].drift;
     drifts->near++;
 }
 

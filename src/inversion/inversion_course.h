@@ -21,12 +21,12 @@ struct inversion_best_samples {
 };
 
 /// What the iterations since the fit came near its targets still asked for, of the ramp and of the
-/// pressure of each state.
+/// pressure of each state, at constant pressure of the density (inversion/inversion_bulk.h).
 enum { INVERSION_MAX_DRIFTS = 8 };
 struct inversion_drifts {
     uint32_t near; ///< such iterations; the last of them are kept
     uint32_t met;  ///< those of them that met all targets
-    double ramp[INVERSION_MAX_DRIFTS], pressure[INVERSION_MAX_DRIFTS][INVERSE_MAX_STATES];
+    double ramp[INVERSION_MAX_DRIFTS], bulk[INVERSION_MAX_DRIFTS][INVERSE_MAX_STATES];
 };
 
 /// What a checkpoint keeps besides arrays and samplers.

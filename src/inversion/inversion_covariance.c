@@ -216,10 +216,37 @@ static void add_single(struct workspace *w) {
     }
 }
 
+/// c ← s Q Qᵀ c in units of sqrt(⟨S⟩), s = 1 − noise/|Qᵀ c|² or 0.
+static void smooth_density(const struct workspace *w,
+                           const struct inversion_covariance_density *density) {
+    const struct inversion_covariance_blocks *blocks = w->blocks;
+    for (size_t block = 0, first = 0; block < blocks->blocks; first += blocks->size[block++]) {
+        const double noise = (double)w->count[block] * density->variance / w->independent;
+        const size_t last = first + blocks->size[block];
+        double squares = 0;
+        for (size_t a = first; a < last; a++)
+            density->covariance[a] = 0;
+        for (size_t k = 0; k < w->count[block]; k++) {
+            double part = 0;
+            for (size_t a = first; a < last; a++) {
+                const double unit = gsl_vector_get(w->unit, a);
+                part += unit > 0 ? gsl_matrix_get(w->q, a, k) * density->sampled[a] / unit : 0;
+            }
+            squares += part * part;
+            for (size_t a = first; a < last; a++)
+                density->covariance[a] += part * gsl_matrix_get(w->q, a, k);
+        }
+        const double share = squares > noise ? 1 - noise / squares : 0;
+        for (size_t a = first; a < last; a++)
+            density->covariance[a] *= share * gsl_vector_get(w->unit, a);
+    }
+}
+
 enum status mf_inversion_covariance_find(const struct inversion_covariance_blocks *blocks,
                                          const double *sampled, const double *mean,
                                          double independent, double *covariance, double *shared,
-                                         size_t *functions) {
+                                         size_t *functions,
+                                         const struct inversion_covariance_density *density) {
     enum status status = STATUS_OK;
     struct workspace w = {.blocks = blocks, .independent = independent};
     const size_t bins = blocks->bins;
@@ -230,6 +257,8 @@ enum status mf_inversion_covariance_find(const struct inversion_covariance_block
         *functions += w.count[block];
     }
     CHECK(smooth(&w));
+    if (density)
+        smooth_density(&w, density);
     for (size_t a = 0; a < bins; a++)
         shared[a] = gsl_matrix_get(w.c, a, a) * pow(gsl_vector_get(w.unit, a), 2);
     add_single(&w);

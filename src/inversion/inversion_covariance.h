@@ -31,6 +31,14 @@ struct inversion_covariance_blocks {
     size_t blocks, bins;
 };
 
+/// Covariance of S with the density, in the same functions and as far as it is more than its noise:
+/// W. James and C. Stein, Proc. 4th Berkeley Symp. 1, 361 (1961).
+struct inversion_covariance_density {
+    const double *sampled; ///< shape [bins]
+    double variance;       ///< of the density
+    double *covariance;    ///< what is left of it, shape [bins]
+};
+
 /// @param[in]  sampled      C of the samples, shape [bins, bins]
 /// @param[in]  mean         ⟨S⟩, shape [bins]
 /// @param[in]  independent  samples that count as independent
@@ -38,8 +46,10 @@ struct inversion_covariance_blocks {
 /// @param[out] shared       variance of each bin in the functions, what the noise of C is in
 ///                          proportion to, shape [bins]
 /// @param[out] functions    of all blocks together
+/// @param[in]  density      of samples whose boxes change; NULL: they stay
 /// Fails: NO_MEMORY. Tested: test_inversion_covariance.
-enum status mf_inversion_covariance_find(const struct inversion_covariance_blocks *blocks,
-                                         const double *sampled, const double *mean,
-                                         double independent, double *covariance, double *shared,
-                                         size_t *functions) MUST_USE;
+enum status
+mf_inversion_covariance_find(const struct inversion_covariance_blocks *blocks,
+                             const double *sampled, const double *mean, double independent,
+                             double *covariance, double *shared, size_t *functions,
+                             const struct inversion_covariance_density *density) MUST_USE;

@@ -117,10 +117,9 @@ static void fill_others(const struct inversion_state *state, struct filling *to)
     const struct targets *targets = &state->problem->targets;
     const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
     const struct target *integrals = &targets->target[mf_kirkwood_buff_kind()];
-    if (targets_ask(targets, TARGET_PRESSURE))
-        fill_row(to, state->pressure.slope,
-                 *targets->target[TARGET_PRESSURE].value - state->pressure.value,
-                 state->assessment.pressure_reach);
+    if (mf_inversion_bulk_is_asked(state))
+        fill_row(to, state->bulk.slope, mf_inversion_bulk_missing(state),
+                 state->assessment.bulk_reach);
     for (size_t pair = 0; pair < kb->pairs; pair++)
         if (isfinite(integrals->value[pair]))
             fill_row(to, kb->slope + pair * state->grid.known,
@@ -133,8 +132,7 @@ static size_t count_rows(const struct inversion_equations *equations) {
     size_t count = 0;
     for (size_t s = 0; s < equations->states; s++) {
         const struct inversion_state *state = &equations->state[s];
-        count += state->grid.known + state->kirkwood_buff.pairs +
-                 targets_ask(&state->problem->targets, TARGET_PRESSURE);
+        count += state->grid.known + state->kirkwood_buff.pairs + mf_inversion_bulk_is_asked(state);
     }
     return count;
 }
@@ -233,9 +231,9 @@ static enum status fill_scatter(const struct inversion_equations *equations, dou
         const struct inversion_kirkwood_buff *kb = &state->kirkwood_buff;
         const struct target *integrals = &targets->target[mf_kirkwood_buff_kind()];
         TRY(add_scatter(state, equations->kind[s], equations->scatter));
-        if (equations->reduced && targets_ask(targets, TARGET_PRESSURE))
-            add_scatter_of_number(state, state->pressure.slope, state->assessment.pressure_reach,
-                                  birge, equations->scatter);
+        if (equations->reduced && mf_inversion_bulk_is_asked(state))
+            add_scatter_of_number(state, state->bulk.slope, state->assessment.bulk_reach, birge,
+                                  equations->scatter);
         for (size_t pair = 0; pair < kb->pairs; pair++)
             if (isfinite(integrals->value[pair]))
                 add_scatter_of_number(state, kb->slope + pair * known,

@@ -30,6 +30,7 @@ static const char *const sums[SAMPLER_SUMS] = {[SAMPLER_VIRIAL] = "the pressure"
                                                [SAMPLER_ENERGY] = "the energy",
                                                [SAMPLER_GYRATION] = "R_g^2 of the molecules",
                                                [SAMPLER_ENDS] = "R_e^2 of the molecules",
+                                               [SAMPLER_DENSITY] = "the density",
                                                [SAMPLER_WAVES] = "the longest waves of the types"};
 
 /// Numbers of a sample that are tested together.

@@ -38,7 +38,9 @@ static void report_what_is_missing(const struct inversion *inversion,
                                    char reason[INVERSE_REASON_SIZE]) {
     const struct inversion_progress *p = &inversion->course.progress;
     const struct inversion_parameters *settings = &inversion->parameters;
-    const struct target_distance *pressure = &p->best.distance[TARGET_PRESSURE];
+    const enum target_kind kind = mf_inversion_bulk_kind(inversion->state);
+    const struct target_distance *bulk = &p->best.distance[kind];
+    const char *name = mf_targets_name((int)kind), *unit = mf_observable_kind(kind).target->unit;
     const struct target_distance *integrals = &p->best.distance[mf_kirkwood_buff_kind()];
     const struct inversion_band_drift *ramp = &inversion->course.band.drifts.ramp;
     const struct inversion_band_drift farthest = mf_inversion_band_farthest(inversion);
@@ -50,12 +52,12 @@ static void report_what_is_missing(const struct inversion *inversion,
                  "(at most %.2g by noise): try more \"iterations\" or \"samples\"",
                  mf_targets_name(missed), p->best.distance[missed].rms,
                  p->best.distance[missed].noise, p->best.worst.misfit, p->best.worst.probable);
-    else if (targets_ask(&inversion->problem->targets, TARGET_PRESSURE) &&
-             pressure->rms > mf_inverse_noise_margin * pressure->noise)
+    else if (mf_inversion_bulk_is_asked(inversion->state) &&
+             bulk->rms > mf_inverse_noise_margin * bulk->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
-                 "g(r) agrees, but the pressure is off by %.3g" STATUS_PRESSURE
-                 " (statistical error %.2g" STATUS_PRESSURE ")",
-                 pressure->rms, pressure->noise);
+                 "g(r) agrees, but the %s is off by %.3g" STATUS_UNIT
+                 " (statistical error %.2g" STATUS_UNIT ")",
+                 name, bulk->rms, unit, bulk->noise, unit);
     else if (integrals->rms > mf_inverse_noise_margin * integrals->noise)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g(r) agrees, but an integral of target.kirkwood_buff is off by %.3g" STATUS_VOLUME
@@ -83,10 +85,10 @@ static void report_what_is_missing(const struct inversion *inversion,
                  "g(r) agrees, but what it hardly determines has not converged: a ramp "
                  "A (1 - r/cutoff) of the potential still drifts by %.2g" STATUS_ENERGY
                  " (error %.2g" STATUS_ENERGY "), and "
-                 "the pressure by %.2g" STATUS_PRESSURE " (error %.2g" STATUS_PRESSURE
-                 "); give \"pressure\" as a second target, or more "
+                 "the %s by %.2g" STATUS_UNIT " (error %.2g" STATUS_UNIT
+                 "); give \"%s\" as a second target, or more "
                  "\"iterations\"",
-                 ramp->drift, ramp->open, farthest.drift, farthest.open);
+                 ramp->drift, ramp->open, name, farthest.drift, unit, farthest.open, unit, name);
     else
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g(r) agrees within a statistical error of %.2g, but \"precision\" is %.2g: more "

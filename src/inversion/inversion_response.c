@@ -18,12 +18,17 @@ enum status mf_inversion_response_init(struct inversion_state *state) {
     NEW_ARRAY(response->shared, grid->known);
     NEW_ARRAY(response->mean, grid->known);
     NEW_ARRAY(response->phi, grid->known);
+    if (mf_inversion_bulk_kind(state) == TARGET_DENSITY) {
+        NEW_ARRAY(response->of_density, grid->known);
+        NEW_ARRAY(response->density, grid->known);
+    }
+    if (response->density || grid->groups > 0)
+        NEW_ARRAY(response->values, grid->known * grid->known);
     if (grid->groups == 0)
         return STATUS_OK;
     for (size_t g = 0; g < grid->groups; g++)
         size += grid->group[g].own.known * grid->group[g].own.known;
     NEW_ARRAY(response->means, size);
-    NEW_ARRAY(response->values, grid->known * grid->known);
     double *means = response->means;
     for (size_t g = 0; g < grid->groups; g++) {
         const struct bonded_grid *own = &grid->group[g].own;
@@ -36,6 +41,8 @@ done:
 
 void mf_inversion_response_clear(struct inversion_response *response) {
     mf_memory_free(response->means);
+    mf_memory_free(response->of_density);
+    mf_memory_free(response->density);
     mf_memory_free(response->values);
     mf_memory_free(response->mean);
     mf_memory_free(response->phi);
@@ -63,12 +70,24 @@ static void respond(const struct inversion_state *state, const double *c, double
     }
 }
 
+/// What the potential of pairs does to g by the density.
+static void add_density(const struct inversion_state *state, size_t a, double *row) {
+    const struct inversion_response *response = &state->response;
+    const double w = state->replicas.counts.mean[state->bins + SAMPLER_DENSITY];
+    for (size_t b = 0; b < state->grid.pairs_known; b++)
+        row[b] = w * row[b] + response->mean[b] * response->density[a];
+}
+
 void mf_inversion_response_find(struct inversion_state *state) {
     const size_t known = state->grid.known;
     if (state->response.values == NULL)
         return;
-    for (size_t a = 0; a < known; a++)
-        respond(state, state->response.covariance + a * known, state->response.values + a * known);
+    for (size_t a = 0; a < known; a++) {
+        double *row = state->response.values + a * known;
+        respond(state, state->response.covariance + a * known, row);
+        if (state->response.density)
+            add_density(state, a, row);
+    }
 }
 
 const double *mf_inversion_response_values(const struct inversion_state *state) {
@@ -125,6 +144,9 @@ enum status mf_inversion_response_add(struct inversion_state *state) {
     const double now = counts->count / state->inefficiency;
     response->independent = find_worth(state) + now;
     const double share = now / response->independent;
+    const size_t density = state->bins + SAMPLER_DENSITY;
+    const struct inversion_covariance_density with = {
+        response->of_density, mf_comoments_covariance(counts, density, density), response->density};
     for (size_t a = 0; a < grid->known; a++) {
         const size_t bin = grid->known_bin[a];
         for (size_t b = 0; b < grid->known; b++) {
@@ -133,20 +155,23 @@ enum status mf_inversion_response_add(struct inversion_state *state) {
                 (1 - share) * *c + share * mf_comoments_covariance(counts, bin, grid->known_bin[b]);
         }
         response->mean[a] = (1 - share) * response->mean[a] + share * counts->mean[bin];
+        if (response->of_density)
+            response->of_density[a] = (1 - share) * response->of_density[a] +
+                                      share * mf_comoments_covariance(counts, bin, density);
         response->phi[a] =
             (1 - share) * response->phi[a] + share * state->phi[grid->known_point[a]];
     }
     TRY(mf_inversion_covariance_find(
         &(struct inversion_covariance_blocks){grid->known_of, grid->blocks, grid->known},
         response->sampled, response->mean, response->independent, response->covariance,
-        response->shared, &response->functions));
+        response->shared, &response->functions, response->density ? &with : NULL));
     mf_inversion_response_find(state);
     mf_inversion_kirkwood_buff_respond(state, share);
     return STATUS_OK;
 }
 
 enum status mf_inversion_response_assess(struct inversion_state *state) {
-    mf_inversion_pressure_measure(state);
+    mf_inversion_bulk_measure(state);
     TRY(mf_inversion_response_add(state));
-    return mf_inversion_pressure_slopes(state);
+    return mf_inversion_bulk_slopes(state);
 }

@@ -6,6 +6,11 @@
 /// noise of its own in each bin asks for a U with 1.22 times the noise of −k_B T ln p: with a U
 /// that is constant in each bin, errors of bonds and angles were stated too small by so much.
 /// Φ of pairs, which their prior keeps smooth, counts as constant in a bin.
+///
+/// Where boxes change, S of pairs stands for their counts G with the weight V/V_scene, whose mean
+/// is that of g, and the energy is that of the pairs as they are, G w with w = V_scene/V:
+///   cov(G_a, G_b w) = ⟨w⟩ cov(G_a, G_b) + ⟨G_b⟩ cov(G_a, w),
+/// the second of which is what a potential does to g by the density.
 #pragma once
 
 #include "base/status.h"
@@ -21,7 +26,10 @@ struct inversion_response {
     double *covariance; ///< C but for its noise (inversion/inversion_covariance.h), the same shape
     double *shared;     ///< variance of S in its functions, shape [known]
     double *means;      ///< M of each group, one after the other; NULL without groups
-    double *values;     ///< the response, shape [known, known]; NULL without groups
+    double *of_density; ///< covariance of S with SAMPLER_DENSITY as sampled, shape [known]; NULL
+                        ///< where boxes stay
+    double *density;    ///< the same but for its noise
+    double *values;     ///< the response, shape [known, known]; NULL without groups and density
     double *mean;       ///< of S in the samples that C is made of, shape [known]
     double *phi;        ///< the mean of their potentials in the known bins, shape [known]
     double independent; ///< samples that C is worth at the present potential; 0: nothing is kept
@@ -40,7 +48,7 @@ enum status mf_inversion_response_add(struct inversion_state *state) MUST_USE;
 /// Fill the response from the present C. Tested: test_inversion_response.
 void mf_inversion_response_find(struct inversion_state *state);
 
-/// The response, C itself without groups.
+/// The response, C itself without groups and density.
 const double *mf_inversion_response_values(const struct inversion_state *state);
 
 /// What settled samples say besides g: how far the pressure is from what is asked for, and how all

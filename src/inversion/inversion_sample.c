@@ -115,15 +115,13 @@ static bool section_is_far_beyond_drift(const struct inversion_state *state,
 }
 
 bool mf_inversion_is_far_beyond_drift(const struct inversion_state *state) {
-    const struct targets *targets = &state->problem->targets;
     if (state->basis.count > 0) // what is off may be out of reach of the gradient
         return false;
     for (int k = 0; k < state->assessment.sections; k++)
         if (!section_is_far_beyond_drift(state, &state->assessment.section[k]))
             return false;
-    return !targets_ask(targets, TARGET_PRESSURE) ||
-           mf_inversion_pressure_shift(state) <
-               noise_share * fabs(state->pressure.value - *targets->target[TARGET_PRESSURE].value);
+    return !mf_inversion_bulk_is_asked(state) ||
+           mf_inversion_bulk_shift(state) < noise_share * fabs(mf_inversion_bulk_missing(state));
 }
 
 /// Whether samples that have not settled are given up: they have cost enough; they are those of a
@@ -168,7 +166,7 @@ static enum status take(struct sampling *sampling, bool again) {
     }
     TRY(mf_inversion_equilibrium_check(state, &state->assessment.unequilibrated));
     mf_inversion_assess(state);
-    mf_inversion_pressure_measure(state);
+    mf_inversion_bulk_measure(state);
     mf_inversion_equilibrium_reset(state);
     return STATUS_OK;
 }

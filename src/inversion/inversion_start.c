@@ -160,7 +160,7 @@ bool mf_inversion_start_has_other(const struct inversion *inversion,
 bool mf_inversion_start_is_under_tension(const struct inversion_state *state,
                                          const struct inversion_assessment *assessment) {
     return assessment->distance[TARGET_RDF].rms > poor * find_structure(state) &&
-           state->pressure.value < 0;
+           state->bulk.pressure < 0;
 }
 
 bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {

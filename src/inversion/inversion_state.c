@@ -90,7 +90,7 @@ static enum status allocate(struct inversion_state *state) {
     NEW_ARRAY(state->pool.excess, known);
     NEW_ARRAY(state->pool.variance, known);
     NEW_ARRAY(state->pool.phi, state->grid.points);
-    NEW_ARRAY(state->pressure.slope, known);
+    NEW_ARRAY(state->bulk.slope, known);
     NEW_ARRAY(state->inside.g, state->grid.pairs * state->grid.bins);
     CHECK(mf_inversion_response_init(state));
     CHECK(mf_inversion_kirkwood_buff_init(state));
@@ -112,10 +112,11 @@ enum status mf_inversion_state_init(struct inversion_state *state,
     TRY(refuse_holes(state));
     TRY(allocate(state));
     mf_inversion_count_targets(state);
-    if (state->grid.pairs == 0 && targets_ask(&problem->targets, TARGET_PRESSURE))
+    if (state->grid.pairs == 0 && mf_inversion_bulk_is_asked(state))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "target.pressure: no pair potential is fitted that could meet it; "
-                              "with \"fitted\": \"no\" it is only compared");
+                              "target.%s: no pair potential is fitted that could meet it; "
+                              "with \"fitted\": \"no\" it is only compared",
+                              mf_targets_name((int)mf_inversion_bulk_kind(state)));
     if (coefficients)
         return mf_inversion_basis_init(&state->basis, &state->grid, coefficients);
     return state->grid.pairs > 1 || mf_potential_grid_has_terms(&state->grid)
@@ -187,11 +188,11 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     mf_inversion_response_clear(&state->response);
     mf_memory_free(state->target.shape);
     mf_memory_free(state->groups);
-    double *arrays[] = {state->target.ideal,   state->target.unit,   state->target.counts,
-                        state->target.error,   state->target.min,    state->target.common,
-                        state->excess,         state->variance,      state->bin_inefficiency,
-                        state->pool.excess,    state->pool.variance, state->pool.phi,
-                        state->pressure.slope, state->inside.g,      state->target.steepness};
+    double *arrays[] = {state->target.ideal, state->target.unit,   state->target.counts,
+                        state->target.error, state->target.min,    state->target.common,
+                        state->excess,       state->variance,      state->bin_inefficiency,
+                        state->pool.excess,  state->pool.variance, state->pool.phi,
+                        state->bulk.slope,   state->inside.g,      state->target.steepness};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }
@@ -212,6 +213,8 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
     span[n++] = (struct memory_span){response->phi, bytes};
     span[n++] = (struct memory_span){&response->functions, sizeof response->functions};
     span[n++] = (struct memory_span){response->sampled, known * bytes};
+    if (response->of_density)
+        span[n++] = (struct memory_span){response->of_density, bytes};
     span[n++] = (struct memory_span){&state->inside.min, sizeof state->inside.min};
     span[n++] = (struct memory_span){state->inside.g,
                                      state->grid.pairs * state->grid.bins * sizeof(double)};

@@ -11,7 +11,7 @@
 #include "inversion/imc_solve.h"
 #include "inversion/inversion_basis.h"
 #include "inversion/inversion_kirkwood_buff.h"
-#include "inversion/inversion_pressure.h"
+#include "inversion/inversion_bulk.h"
 #include "inversion/inversion_response.h"
 #include "inversion/inversion_assessment.h"
 #include "inversion/replicas.h"
@@ -78,7 +78,7 @@ struct inversion_state {
     double inefficiency;                ///< the largest of all sections
     struct inversion_response response; ///< of S to the potential, by C
     struct inversion_pool pool;
-    struct inversion_pressure pressure;
+    struct inversion_bulk bulk;
     struct inversion_kirkwood_buff kirkwood_buff;
     struct inversion_assessment assessment;
     struct {

@@ -25,7 +25,7 @@ static double section_noises(const struct inversion_state *state, int k) {
 
 struct inversion_worst mf_inversion_states_worst(const struct inversion_state *state,
                                                  size_t states) {
-    const int number[] = {TARGET_PRESSURE, mf_kirkwood_buff_kind()};
+    const int number[] = {TARGET_PRESSURE, TARGET_DENSITY, mf_kirkwood_buff_kind()};
     struct inversion_worst worst = {0, state->assessment.section[0].kind, 0};
     for (size_t s = 0; s < states; s++) {
         for (int k = 0; k < state[s].assessment.sections; k++)
@@ -84,12 +84,13 @@ static void join_reach(const struct inversion_state *state, size_t states,
     double farthest = 0;
     for (size_t s = 0; s < states; s++) {
         const struct inversion_assessment *own = &state[s].assessment;
-        if (targets_ask(&state[s].problem->targets, TARGET_PRESSURE))
+        if (mf_inversion_bulk_is_asked(&state[s]))
             farthest =
-                fmax(farthest, noises_of(own->distance[TARGET_PRESSURE].rms, own->pressure_reach));
+                fmax(farthest, noises_of(own->distance[mf_inversion_bulk_kind(&state[s])].rms,
+                                         own->bulk_reach));
     }
-    const struct target_distance *distance = &all->distance[TARGET_PRESSURE];
-    all->pressure_reach = farthest > 0 ? distance->rms / farthest : distance->noise;
+    const struct target_distance *distance = &all->distance[mf_inversion_bulk_kind(state)];
+    all->bulk_reach = farthest > 0 ? distance->rms / farthest : distance->noise;
 }
 
 /// From the section of the first state to that of all.
@@ -142,7 +143,8 @@ void mf_inversion_states_assess(const struct inversion_state *state, size_t stat
         all->useless = all->useless || own->useless;
     }
     join_sections(state, states, all);
-    join_number(state, states, TARGET_PRESSURE, &all->distance[TARGET_PRESSURE]);
+    join_number(state, states, mf_inversion_bulk_kind(state),
+                &all->distance[mf_inversion_bulk_kind(state)]);
     join_reach(state, states, all);
     join_number(state, states, mf_kirkwood_buff_kind(), &all->distance[mf_kirkwood_buff_kind()]);
 }

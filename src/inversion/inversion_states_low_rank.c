@@ -77,16 +77,16 @@ static void take_mean(const struct state_steps *state_steps, double *step) {
 static void add_ramp(const struct state_steps *state_steps, double *step) {
     const struct potential_grid *grid = &state_steps->state->grid;
     double product = 0, squares = 0;
-    if (!targets_ask(&state_steps->state->problem->targets, TARGET_PRESSURE) || grid->pairs == 0)
+    if (!mf_inversion_bulk_is_asked(state_steps->state) || grid->pairs == 0)
         return;
     for (size_t s = 0; s < state_steps->states; s++) {
         const struct inversion_state *state = &state_steps->state[s];
-        const double weight = pow(state->assessment.distance[TARGET_PRESSURE].noise, -2);
-        const double slope = mf_inversion_pressure_ramp_slope(state);
-        double missing =
-            *state->problem->targets.target[TARGET_PRESSURE].value - state->pressure.value;
+        const double weight =
+            pow(state->assessment.distance[mf_inversion_bulk_kind(state)].noise, -2);
+        const double slope = mf_inversion_bulk_ramp_slope(state);
+        double missing = mf_inversion_bulk_missing(state);
         for (size_t b = 0; b < grid->known; b++)
-            missing -= state->pressure.slope[b] * step[grid->known_point[b]];
+            missing -= state->bulk.slope[b] * step[grid->known_point[b]];
         product += weight * slope * missing;
         squares += weight * slope * slope;
     }

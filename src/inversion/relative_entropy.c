@@ -62,11 +62,12 @@ static const struct inversion_basis_size *coefficients(const void *parameters) {
 
 static enum status create(void *inversion, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
-    if (targets_ask(&problem->targets, TARGET_PRESSURE))
+    const enum target_kind bulk = inverse_problem_bulk(problem);
+    if (targets_ask(&problem->targets, bulk))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "target.pressure: \"%s\" fits the structure alone; with \"fitted\": "
+                              "target.%s: \"%s\" fits the structure alone; with \"fitted\": "
                               "\"no\" it is only compared",
-                              method->name);
+                              mf_targets_name((int)bulk), method->name);
     return mf_inversion_create(inversion, method, problem, parameters);
 }
 

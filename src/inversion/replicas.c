@@ -78,8 +78,6 @@ void mf_replicas_clear(struct replicas *replicas) {
 static enum status fill_blocks(struct replica *replica, size_t numbers, size_t first, size_t last,
                                const struct replicas_plan *plan) {
     const double each = (double)plan->block_samples, begun = clock_thread_seconds();
-    TRY(mf_sampler_plan(&replica->sampler, (last - first) * (uint64_t)plan->block_samples,
-                        (uint64_t)plan->every));
     for (size_t block = first; block < last; block++) {
         double *mean = replica->block + block * numbers;
         memset(mean, 0, numbers * sizeof *mean);

@@ -53,6 +53,7 @@ enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
         (struct sampler){.source = system->engine ? &mf_sampler_engine : sources[kind],
                          .molecules = system->molecules,
                          .composition = *system->composition,
+                         .volume = mf_box_volume(system->box),
                          .bins = {.low = system->low,
                                   .width = system->width,
                                   .bins = system->bins,
@@ -104,10 +105,6 @@ enum status mf_sampler_announce(struct sampler *sampler, bool scatter, uint64_t 
     return sampler->source->announce
                ? sampler->source->announce(sampler->own, scatter, lead, samples, every)
                : STATUS_OK;
-}
-
-enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) {
-    return sampler->source->plan ? sampler->source->plan(sampler->own, samples, every) : STATUS_OK;
 }
 
 double mf_sampler_acceptance(const struct sampler *sampler) {
@@ -204,13 +201,15 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     const size_t bins = pair_histogram_size(&sampler->bins) - 1;
     struct sampler_pairs pairs;
     TRY(sampler->source->run(sampler->own, sweeps, &pairs));
+    const double weight = mf_box_volume(&mf_sampler_particles(sampler)->box) / sampler->volume;
     for (size_t a = 0; a < bins; a++)
-        sample[a] = pairs.counts[a];
+        sample[a] = pairs.counts[a] * weight;
     if (sampler->densities)
         TRY(mf_density_list_find(sampler->densities, mf_sampler_particles(sampler)));
     double *sum = count_groups(sampler, sample + bins);
     sum[SAMPLER_VIRIAL] = pairs.sums.virial;
     sum[SAMPLER_ENERGY] = pairs.sums.energy;
+    sum[SAMPLER_DENSITY] = 1 / weight;
     sum_sizes(sampler, sum);
     sum[SAMPLER_WAVES] = composition_is_mixed(&sampler->composition)
                              ? sum_waves(mf_sampler_particles(sampler), &sampler->composition)

@@ -38,6 +38,7 @@ struct sampler {
     void *own;                           ///< of the source
     const struct molecules *molecules;   ///< NULL: single particles
     struct composition composition;
+    double volume;                     ///< of the scene [λ^d]
     struct pair_histogram bins;        ///< of pairs; without counts
     const struct sampler_group *group; ///< shape [groups]
     size_t groups, integrals;
@@ -100,6 +101,7 @@ enum sampler_sum {
     SAMPLER_ENERGY,   ///< Σ Φ, and U of molecules [k_B T_0]
     SAMPLER_GYRATION, ///< Σ R_g² of the molecules, each bead with the same weight [λ²]
     SAMPLER_ENDS,     ///< Σ R_e² of the molecules, from the first bead to the last [λ²]
+    SAMPLER_DENSITY,  ///< volume of the scene over that of the sample, 1 where boxes stay [1]
     SAMPLER_WAVES, ///< of a mixture Σ_a |ρ_a(q)|²/N_a of types a, q along the longest edge [1]
     SAMPLER_SUMS,
 };
@@ -109,12 +111,10 @@ enum sampler_sum {
 enum status mf_sampler_announce(struct sampler *sampler, bool scatter, uint64_t lead,
                                 uint64_t samples, uint64_t every) MUST_USE;
 
-/// So many samples come next, with so many sweeps between them. Fails: as sampling_engine.begin.
-enum status mf_sampler_plan(struct sampler *sampler, uint64_t samples, uint64_t every) MUST_USE;
-
 /// Sweeps, then a sample: S of each bin of each pair type and of each group, then the sums,
 /// then the integrals of the configuration, then of the bins of each group of local densities the
-/// stresses Σ_i Σ_j r w'(r_ij) of the beads i in them.
+/// stresses Σ_i Σ_j r w'(r_ij) of the beads i in them. Where boxes change, pairs have the weight
+/// V/V_scene, so that the mean is that of g.
 /// @param[out] sample  shape [mf_sampler_numbers]
 /// Fails: NO_MEMORY, INTERRUPTED. Tested: test_monte_carlo_mixture.
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) MUST_USE;

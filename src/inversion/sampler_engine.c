@@ -4,7 +4,9 @@
 // plan. Pairs are counted by our own force pass, whose energies must be those of the program.
 #include "base/statistics.h"
 #include "dynamics/hybrid.h"
+#include "dynamics/simulation_change.h"
 #include "inversion/sampler_source.h"
+#include "inversion/tilted_pairs.h"
 #include "problem/sampling_engine.h"
 
 #include <math.h>
@@ -15,13 +17,15 @@ static const double energy_share = 1e-3, energy_of_bead = 5e-3;
 
 struct engine_source {
     struct hybrid hybrid; ///< of whatever configuration
+    struct tilted_pairs tilted;
     const struct sampling_engine *engine;
     const struct table *potential;
     const struct molecules *molecules;
     double temperature;
     size_t replica;
-    uint64_t seed, number, lead;
-    bool fresh;
+    uint64_t seed, number;
+    bool fresh;                       ///< nothing has been left to go on from
+    struct engine_piece piece;        ///< that was announced last
     struct running_mean temperatures; ///< of the present piece
     void *frames;                     ///< of it
     double *position[3];              ///< of a frame, by id
@@ -34,6 +38,7 @@ static void clear(void *own) {
     for (int d = 0; d < 3; d++)
         mf_memory_free(source->position[d]);
     mf_hybrid_clear(&source->hybrid);
+    mf_tilted_pairs_clear(&source->tilted);
 }
 
 static enum status init(void *own, const struct sampler_system *system,
@@ -53,9 +58,9 @@ static enum status init(void *own, const struct sampler_system *system,
                           system->seed, &system->bias);
 }
 
-/// The program begins again from where it began.
+/// The program begins again from where it began, and equilibrates, as it was told before.
 static enum status scatter(void *own) {
-    ((struct engine_source *)own)->fresh = true;
+    (void)own;
     return STATUS_OK;
 }
 
@@ -65,44 +70,38 @@ static enum status begin(void *own) {
 }
 
 static enum status equilibrate(void *own, uint64_t sweeps) {
-    ((struct engine_source *)own)->lead = sweeps;
+    (void)own, (void)sweeps;
     return STATUS_OK;
-}
-
-static struct engine_piece describe(const struct engine_source *source, bool fresh, uint64_t lead,
-                                    uint64_t samples, uint64_t every) {
-    return (struct engine_piece){.replica = source->replica,
-                                 .number = source->number,
-                                 .fresh = fresh,
-                                 .seed = source->seed,
-                                 .temperature = source->temperature,
-                                 .potential = source->potential,
-                                 .molecules = source->molecules,
-                                 .lead = lead,
-                                 .frames = samples,
-                                 .every = every};
 }
 
 static enum status announce(void *own, bool scatter, uint64_t lead, uint64_t samples,
                             uint64_t every) {
     struct engine_source *source = own;
     source->number++; // of all replicas, whichever of them will come to begin
-    const struct engine_piece piece =
-        describe(source, scatter || source->fresh, lead, samples, every);
-    return source->engine->announce ? source->engine->announce(source->engine->context, &piece)
-                                    : STATUS_OK;
-}
-
-/// Ask for all samples that come next, at once.
-static enum status plan(void *own, uint64_t samples, uint64_t every) {
-    struct engine_source *source = own;
     source->engine->end(source->frames);
     source->frames = NULL;
-    const struct engine_piece piece = describe(source, source->fresh, source->lead, samples, every);
+    source->piece = (struct engine_piece){.replica = source->replica,
+                                          .number = source->number,
+                                          .fresh = scatter || source->fresh,
+                                          .seed = source->seed,
+                                          .temperature = source->temperature,
+                                          .potential = source->potential,
+                                          .molecules = source->molecules,
+                                          .lead = lead,
+                                          .frames = samples,
+                                          .every = every};
+    return source->engine->announce
+               ? source->engine->announce(source->engine->context, &source->piece)
+               : STATUS_OK;
+}
+
+/// Ask for all samples that were announced, at once.
+static enum status open_frames(struct engine_source *source) {
+    if (source->frames)
+        return STATUS_OK;
     const enum status status =
-        source->engine->begin(source->engine->context, &piece, &source->frames);
+        source->engine->begin(source->engine->context, &source->piece, &source->frames);
     source->fresh = status != STATUS_OK; // from what it has not left nothing goes on
-    source->lead = 0;
     source->temperatures = (struct running_mean){0};
     return status;
 }
@@ -114,11 +113,34 @@ static void place(struct engine_source *source) {
             particles->position[d][k] = source->position[d][particles->id[k]];
 }
 
+static enum status count(struct engine_source *source, const struct box *box,
+                         struct sampler_pairs *pairs) {
+    struct hybrid *hybrid = &source->hybrid;
+    TRY(mf_simulation_set_box(&hybrid->simulation, box));
+    TRY(mf_hybrid_refresh(hybrid));
+    *pairs = (struct sampler_pairs){hybrid->counts, hybrid->sums};
+    return STATUS_OK;
+}
+
+/// Particles are then known by their parts of the box's vectors.
+static enum status count_tilted(struct engine_source *source, const struct engine_sample *sample,
+                                struct sampler_pairs *pairs) {
+    struct particles *particles = &source->hybrid.simulation.particles;
+    const struct composition *composition = &source->hybrid.simulation.setup.composition;
+    particles->box = sample->box;
+    for (int d = 0; d < 3; d++)
+        for (size_t k = 0; k < particles->count; k++)
+            source->position[d][k] /= sample->box.length[d];
+    TRY(mf_tilted_pairs_count(&source->tilted, &sample->vectors, source->position, composition,
+                              source->potential, &source->hybrid.trial, &pairs->sums));
+    pairs->counts = source->tilted.counts;
+    return STATUS_OK;
+}
+
 /// Whether the program has the potential that it was given.
-static enum status check_energy(const struct engine_source *source, double energy) {
-    const struct hybrid *hybrid = &source->hybrid;
-    const double beads = (double)hybrid->simulation.particles.count;
-    const double own = hybrid->sums.energy, off = fabs(energy - own);
+static enum status check_energy(const struct engine_source *source, double energy, double own) {
+    const double beads = (double)source->hybrid.simulation.particles.count;
+    const double off = fabs(energy - own);
     if (!isfinite(energy) || (source->molecules && !source->engine->whole_energy) ||
         !(off > energy_share * fabs(own) + energy_of_bead * beads * source->temperature))
         return STATUS_OK;
@@ -156,17 +178,17 @@ static enum status run(void *own, uint64_t sweeps, struct sampler_pairs *pairs) 
     struct engine_source *source = own;
     struct hybrid *hybrid = &source->hybrid;
     struct engine_sample sample;
-    (void)sweeps; // as they were planned
+    (void)sweeps; // as they were announced
+    TRY(open_frames(source));
     TRY(source->engine->next(source->frames, source->position, &sample));
     place(source);
-    TRY(mf_hybrid_refresh(hybrid));
-    TRY(check_energy(source, sample.energy));
+    TRY(sample.tilted ? count_tilted(source, &sample, pairs) : count(source, &sample.box, pairs));
+    TRY(check_energy(source, sample.energy, pairs->sums.energy));
     TRY(check_temperature(source, sample.temperature));
-    *pairs = (struct sampler_pairs){hybrid->counts, hybrid->sums};
     if (!source->engine->whole_energy && !isfinite(sample.pressure))
         pairs->sums.virial = 0; // that of the known forces is missing
     if (isfinite(sample.pressure)) {
-        const struct box *box = &hybrid->simulation.particles.box;
+        const struct box *box = &hybrid->simulation.setup.box; // where pressures are found by it
         const double ideal = (double)hybrid->simulation.particles.count * source->temperature;
         pairs->sums.virial = box->dimensions * (sample.pressure * mf_box_volume(box) - ideal);
     }
@@ -197,7 +219,6 @@ const struct sampler_source mf_sampler_engine = {.size = sizeof(struct engine_so
                                                  .begin = begin,
                                                  .equilibrate = equilibrate,
                                                  .announce = announce,
-                                                 .plan = plan,
                                                  .run = run,
                                                  .acceptance = acceptance,
                                                  .particles = particles,

@@ -28,8 +28,6 @@ struct sampler_source {
     /// equilibrate, samples and sweeps between them; NULL: nobody wants to know.
     enum status (*announce)(void *own, bool scatter, uint64_t lead, uint64_t samples,
                             uint64_t every);
-    /// So many samples come next, with so many sweeps between them; NULL: that does not matter.
-    enum status (*plan)(void *own, uint64_t samples, uint64_t every);
     /// Sweeps, then the pairs of the configuration that they lead to.
     enum status (*run)(void *own, uint64_t sweeps, struct sampler_pairs *pairs);
     /// Part of what was tried that was taken, since equilibrate.

@@ -21,7 +21,7 @@
 /// 2 Δt, lower at short times, with the same integral. States are then reported one frame later.
 #pragma once
 
-#include "measure/frame_box.h"
+#include "trajectory/frame_box.h"
 
 struct frame_motion {
     size_t beads;

@@ -40,6 +40,7 @@ struct counting {
     const struct rdf_bins *bins;
     const struct composition *composition; ///< of a mixture
     double *histogram;
+    double weight;                         ///< of a pair
     const struct topology *intermolecular; ///< of which pairs in a molecule are left out, or NULL
 };
 
@@ -50,15 +51,8 @@ static void count_batch(void *context, const float *squared_distances, size_t co
     for (size_t k = 0; k < count; k++) {
         const double place = (sqrt((double)squared_distances[k]) - bins->low) * inverse_width;
         if (place >= 0 && place < (double)bins->count)
-            counting->histogram[(size_t)place] += 1;
+            counting->histogram[(size_t)place] += counting->weight;
     }
-}
-
-void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
-                        const struct neighbours *neighbours, double *histogram) {
-    struct counting counting = {bins, NULL, histogram, NULL};
-    mf_neighbours_visit_distances(neighbours, particles, mf_rdf_bins_range(bins), count_batch,
-                                  &counting);
 }
 
 static void count_batch_of(void *context, const struct neighbours_batch *batch) {
@@ -73,19 +67,30 @@ static void count_batch_of(void *context, const struct neighbours_batch *batch) 
                                             counting->intermolecular->molecule[batch->id_j[k]])
             continue;
         if (place >= 0 && place < (double)bins->count)
-            counting->histogram[(size_t)pair * bins->count + (size_t)place] += 1;
+            counting->histogram[(size_t)pair * bins->count + (size_t)place] += counting->weight;
     }
+}
+
+/// By types if they are told apart.
+static void count(struct counting *counting, const struct particles *particles,
+                  const struct neighbours *neighbours) {
+    const double range = mf_rdf_bins_range(counting->bins);
+    const bool types = counting->composition && composition_is_mixed(counting->composition);
+    if (types || counting->intermolecular)
+        mf_neighbours_visit_pairs(neighbours, particles, range, count_batch_of, counting);
+    else
+        mf_neighbours_visit_distances(neighbours, particles, range, count_batch, counting);
+}
+
+void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
+                        const struct neighbours *neighbours, double *histogram) {
+    count(&(struct counting){bins, NULL, histogram, 1, NULL}, particles, neighbours);
 }
 
 void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
                            const struct particles *particles, const struct neighbours *neighbours,
                            double *histogram) {
-    struct counting counting = {bins, composition, histogram, NULL};
-    if (composition_is_mixed(composition))
-        mf_neighbours_visit_pairs(neighbours, particles, mf_rdf_bins_range(bins), count_batch_of,
-                                  &counting);
-    else
-        mf_rdf_count_pairs(bins, particles, neighbours, histogram);
+    count(&(struct counting){bins, composition, histogram, 1, NULL}, particles, neighbours);
 }
 
 enum status mf_rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
@@ -104,6 +109,7 @@ static enum status begin(struct rdf *rdf, const struct rdf_bins *bins, const str
                         .composition = *composition,
                         .pairs = (size_t)mf_composition_pairs(composition),
                         .planned = endless ? SIZE_MAX : planned,
+                        .weight = 1,
                         .blocks = endless            ? 2 * (size_t)BLOCKS
                                   : planned < BLOCKS ? planned
                                                      : BLOCKS,
@@ -162,6 +168,16 @@ void mf_rdf_clear(struct rdf *rdf) {
     *rdf = (struct rdf){0};
 }
 
+/// Where the box has changed since the last sample, so have the cells of the list.
+static enum status follow_box(struct rdf *rdf, const struct box *box) {
+    if (memcmp(rdf->own_particles.box.length, box->length, sizeof box->length) == 0)
+        return STATUS_OK;
+    rdf->own_particles.box = *box;
+    mf_neighbours_clear(&rdf->manifest);
+    return mf_neighbours_init(&rdf->manifest, NEIGHBOURS_HALF, box, rdf->particle_count,
+                              mf_rdf_bins_range(&rdf->bins), 0);
+}
+
 /// Bins of all pair types.
 static size_t all_bins(const struct rdf *rdf) {
     return rdf->pairs * rdf->bins.count;
@@ -169,6 +185,7 @@ static size_t all_bins(const struct rdf *rdf) {
 
 /// A sorted copy of the particles with a list of the bins' range.
 static enum status make_own_list(struct rdf *rdf, const struct particles *particles) {
+    TRY(follow_box(rdf, &particles->box));
     for (int d = 0; d < particles->box.dimensions; d++)
         memcpy(rdf->own_particles.position[d], particles->position[d],
                particles->count * sizeof *particles->position[d]);
@@ -209,6 +226,10 @@ static double *next_block(struct rdf *rdf) {
     return rdf->histogram + block * all_bins(rdf);
 }
 
+void mf_rdf_set_volume(struct rdf *rdf, double volume) {
+    rdf->weight = volume / mf_box_volume(&rdf->box);
+}
+
 const struct pair_histogram *mf_rdf_histogram(struct rdf *rdf) {
     if (rdf->needs_own_list || rdf->intermolecular)
         return NULL;
@@ -221,14 +242,8 @@ void mf_rdf_sample_counted(struct rdf *rdf) {
     double *histogram = next_block(rdf);
     for (size_t part = 0; part < NEIGHBOURS_MAX_PARTS; part++)
         for (size_t k = 0; k < all_bins(rdf); k++)
-            histogram[k] += rdf->counted.counts[part * pair_histogram_size(&rdf->counted) + k];
-}
-
-static void count_intermolecular(const struct rdf *rdf, const struct particles *particles,
-                                 const struct neighbours *neighbours, double *histogram) {
-    struct counting counting = {&rdf->bins, &rdf->composition, histogram, rdf->intermolecular};
-    mf_neighbours_visit_pairs(neighbours, particles, mf_rdf_bins_range(&rdf->bins), count_batch_of,
-                              &counting);
+            histogram[k] +=
+                rdf->weight * rdf->counted.counts[part * pair_histogram_size(&rdf->counted) + k];
 }
 
 enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
@@ -239,10 +254,9 @@ enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
         particles = &rdf->own_particles;
         neighbours = &rdf->manifest;
     }
-    if (rdf->intermolecular)
-        count_intermolecular(rdf, particles, neighbours, histogram);
-    else
-        mf_rdf_count_pairs_of(&rdf->bins, &rdf->composition, particles, neighbours, histogram);
+    count(&(struct counting){&rdf->bins, &rdf->composition, histogram, rdf->weight,
+                             rdf->intermolecular},
+          particles, neighbours);
     return STATUS_OK;
 }
 

@@ -56,6 +56,7 @@ struct rdf {
     size_t each;                           ///< samples of a block if nothing is planned, else 0
     double *histogram;                     ///< shape [blocks, pairs, bins.count]
     double *block_samples;                 ///< shape [blocks]
+    double weight;                         ///< of the pairs of the next sample: V/V_box
     bool needs_own_list;                   ///< the range exceeds that of the simulation's list
     const struct topology *intermolecular; ///< count pairs of different molecules alone; NULL: all
     struct pair_histogram counted;         ///< by the force pass
@@ -83,6 +84,9 @@ void mf_rdf_clear(struct rdf *rdf);
 /// Add a configuration by what its source has counted. Pairs have the weight V/V_box, so that g is
 /// that of ⟨V S⟩, and where some are left out that of all over those that were looked at.
 void mf_rdf_add(struct rdf *rdf, const struct configuration *configuration);
+
+/// The volume of the next sample of a simulation whose box changes; else it is that of `box`.
+void mf_rdf_set_volume(struct rdf *rdf, double volume);
 
 /// What a force pass is to count for the next sample, cleared: for pair_law.histogram. NULL if the
 /// range exceeds that of the forces; then mf_rdf_sample makes a list of its own.

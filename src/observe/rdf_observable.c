@@ -130,6 +130,7 @@ static enum status sample_force(struct rdf_observed *observed, struct simulation
 static enum status counted(void *state, const struct configuration *configuration) {
     struct simulation *const simulation = configuration->simulation;
     struct rdf_observed *observed = state;
+    mf_rdf_set_volume(&observed->counted, mf_box_volume(&simulation->particles.box));
     mf_rdf_sample_counted(&observed->counted);
     return sample_force(observed, simulation);
 }
@@ -141,6 +142,8 @@ static enum status sample(void *state, const struct configuration *configuration
         mf_rdf_add(&observed->counted, configuration);
         return STATUS_OK;
     }
+    if (observed->counted.planned > 0)
+        mf_rdf_set_volume(&observed->counted, mf_box_volume(&simulation->particles.box));
     if (observed->counted.planned > 0)
         TRY(mf_rdf_sample(&observed->counted, &simulation->particles, &simulation->neighbours));
     return sample_force(observed, simulation);

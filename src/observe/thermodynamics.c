@@ -78,6 +78,7 @@ enum status mf_thermodynamics_sample(struct thermodynamics *thermodynamics,
     here[THERMODYNAMICS_TEMPERATURE] = mf_simulation_temperature(simulation);
     here[THERMODYNAMICS_POTENTIAL_ENERGY] = simulation->sums.energy / count;
     here[THERMODYNAMICS_PRESSURE] = mf_simulation_pressure(simulation);
+    here[THERMODYNAMICS_DENSITY] = mf_particles_density(&simulation->particles);
     here[THERMODYNAMICS_TOTAL_ENERGY] =
         (simulation->sums.energy + mf_particles_kinetic_energy(&simulation->particles)) / count;
     if (told) {
@@ -165,6 +166,7 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
     ratio(replicas, count, THERMODYNAMICS_POTENTIAL_ENERGY, -1, &s.potential_energy,
           &s.potential_energy_error);
     ratio(replicas, count, THERMODYNAMICS_PRESSURE, -1, &s.pressure, &s.pressure_error);
+    ratio(replicas, count, THERMODYNAMICS_DENSITY, -1, &s.density, &s.density_error);
     ratio(replicas, count, THERMODYNAMICS_FORCE_SQUARES, THERMODYNAMICS_LAPLACIAN,
           &s.temperature_configurational, &s.temperature_configurational_error);
     double laplacian, error;

@@ -13,6 +13,7 @@ enum thermodynamics_quantity {
     THERMODYNAMICS_FORCE_SQUARES,    ///< Σ|F|² of the potential, numerator of the configurational
     THERMODYNAMICS_LAPLACIAN,        ///< Σ∇²U, its denominator
     THERMODYNAMICS_TOTAL_ENERGY,     ///< potential and kinetic, of a particle  [k_B T_0]
+    THERMODYNAMICS_DENSITY,          ///< number of particles over the volume   [1/λ^d]
     THERMODYNAMICS_QUANTITIES
 };
 
@@ -63,6 +64,8 @@ struct thermodynamics_summary {
     double laplacian_error; ///< of ⟨∇²U⟩, relative: what a ratio to it is worth
     double potential_energy, potential_energy_error;
     double pressure, pressure_error;
+    double density,
+        density_error; ///< of boxes that change; else it is that of the scene, without error
 };
 struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynamics *replicas,
                                                        size_t count);

@@ -174,13 +174,18 @@ static enum status result_of_all(const void *const *states, size_t count,
                                  const struct observable_values *values) {
     for (size_t k = 0; k < count; k++) {
         const struct thermodynamics_summary s = mf_thermodynamics_result(states[k], 1);
-        mf_pooled_add(values, &s.pressure, &s.pressure_error, count);
+        mf_pooled_add(&values[0], &s.pressure, &s.pressure_error, count);
+        mf_pooled_add(&values[1], &s.density, &s.density_error, count);
     }
     return STATUS_OK;
 }
 
 static const struct observable_target targets[] = {
     {.name = "pressure", .summary = "P", .form = OBSERVABLE_NUMBER, .unit = "k_B T_0/lambda^d"},
+    {.name = "density",
+     .summary = "beads by volume, of another engine",
+     .form = OBSERVABLE_NUMBER,
+     .unit = "1/lambda^d"},
     {.name = NULL}};
 
 static const char *const files[] = {"thermodynamics.tsv", NULL};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem/engine_replay.h"
 
-#include "dynamics/simulation.h"
+#include "dynamics/simulation_change.h"
 
 #include <math.h>
 
@@ -48,9 +48,9 @@ static enum status open_frames(struct replay *replay, const struct engine_piece 
 }
 
 /// Particles are where the frame has them, in the image in which the list knows them.
-static void place(struct particles *particles, double *const position[3]) {
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        const double length = particles->box.length[d];
+static void place(struct particles *particles, const struct box *box, double *const position[3]) {
+    for (int d = 0; d < box->dimensions; d++) {
+        const double length = box->length[d];
         for (size_t k = 0; k < particles->count; k++)
             particles->position[d][k] +=
                 box_nearest(position[d][particles->id[k]] - particles->position[d][k], length);
@@ -70,8 +70,8 @@ static enum status step(struct simulation *simulation) {
     }
     replay->taken++;
     replay->told = (struct integrator_told){sample.temperature, sample.pressure};
-    place(&simulation->particles, replay->position);
-    return STATUS_OK;
+    place(&simulation->particles, &sample.box, replay->position);
+    return mf_simulation_set_box(simulation, &sample.box);
 }
 
 static const struct integrator_told *tell(const void *state) {

@@ -191,6 +191,12 @@ static inline int inverse_problem_threads(const struct inverse_problem *problem)
     return engine && engine->at_once > 0 ? engine->at_once : problem->threads;
 }
 
+/// What a ramp of the potential moves and g(r) hardly knows: the pressure at constant volume; the
+/// density at constant pressure, where it is compared with a target.
+static inline enum target_kind inverse_problem_bulk(const struct inverse_problem *problem) {
+    return targets_ask(&problem->compared, TARGET_DENSITY) ? TARGET_DENSITY : TARGET_PRESSURE;
+}
+
 /// Curves and numbers that are to be found.
 size_t mf_inverse_unknown_count(const struct inverse_problem *problem);
 
@@ -205,13 +211,13 @@ enum { INVERSE_EXTRA = 13, INVERSE_REASON_SIZE = 640 };
 
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {
-    double error;          ///< standard error of A [k_B T_0]; 0: not known
-    double drift;          ///< of A that the target still asks for [k_B T_0]; part of the error
-    double pressure_drift; ///< the same of the pressure [k_B T_0/λ^d]
-    double pressure;       ///< ∂P/∂A [1/λ^d]
-    double pressure_open;  ///< standard error of the pressure by g(r) alone [k_B T_0/λ^d]
-    double directions;     ///< of the potential that the data determine,
-    double bins;           ///< out of so many
+    double error;      ///< standard error of A [k_B T_0]; 0: not known
+    double drift;      ///< of A that the target still asks for [k_B T_0]; part of the error
+    double bulk_drift; ///< the same of what it moves, inverse_problem_bulk
+    double bulk;       ///< its derivative by A
+    double bulk_open;  ///< its standard error by g(r) alone
+    double directions; ///< of the potential that the data determine,
+    double bins;       ///< out of so many
 };
 
 /// What the samples of an inversion forget most slowly.

@@ -11,6 +11,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "system/box_vectors.h"
 #include "system/composition.h"
 
 #include <stdatomic.h>
@@ -57,6 +58,10 @@ struct engine_sample {
     double temperature; ///< kinetic [T_0]
     double pressure;    ///< of everything [k_B T_0/λ^d]
     double energy;      ///< of what `whole_energy` says [k_B T_0]
+    struct box box;     ///< of the frame; at constant volume that of the scene; of a tilted one the
+                        ///< diagonal of its vectors, of which positions are parts then
+    bool tilted;
+    struct box_vectors vectors; ///< of a tilted one
 };
 
 /// Functions are called by several threads, each with pieces of its own.

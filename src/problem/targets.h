@@ -16,6 +16,7 @@ enum target_kind {
     TARGET_MSD,
     TARGET_DIFFUSION,
     TARGET_PRESSURE,
+    TARGET_DENSITY,
     TARGETS = OBSERVABLE_TARGETS ///< at most
 };
 

@@ -83,6 +83,7 @@ static const struct column columns[] = {
     RMSE("MSD", "msd"),
     RMSE("D", "diffusion"),
     RMSE("p", "pressure"),
+    RMSE("rho", "density"),
     RMSE("S", "structure_factor"),
     RMSE("kappa", "force_covariance"),
     BONDED_LIST(BONDED){"D", false, AT(diffusion), NULL, AT(diffusion_error), NULL},

@@ -194,23 +194,26 @@ static void print_open(double value, double error, char text[NUMBER_TEXT_SIZE]) 
              unit * round(error / unit));
 }
 
-/// The pressure, if g(r) does not fix it.
-static void print_pressure(struct progress *to, const struct fit_file *fit,
-                           const struct fit_result *result) {
+/// The pressure, or the density at constant pressure, if g(r) does not fix it.
+static void print_bulk(struct progress *to, const struct fit_file *fit,
+                       const struct fit_result *result) {
     const struct units *units = &fit->scene.units;
     const struct thermodynamics_summary *found = &result->verification->thermodynamics;
-    const double open = result->ramp.pressure_open,
-                 bar = mf_units_factor(units, "k_B T_0/lambda^d");
+    const enum target_kind kind = inverse_problem_bulk(&fit->problem);
+    const char *name = mf_targets_name((int)kind), *of = mf_observable_kind((int)kind).target->unit;
+    const double open = result->ramp.bulk_open, factor = mf_units_factor(units, of);
+    const double value = kind == TARGET_DENSITY ? found->density : found->pressure;
+    const double error = kind == TARGET_DENSITY ? found->density_error : found->pressure_error;
     char unit[UNITS_NAME_SIZE], range[NUMBER_TEXT_SIZE];
     // Of several states that of the first is known, and together they leave less open.
-    if (fit->others > 0 || !(result->ramp.error > 0) || !(open > found->pressure_error) ||
-        targets_ask(&fit->problem.compared, TARGET_PRESSURE))
+    if (fit->others > 0 || !(result->ramp.error > 0) || !(open > error) ||
+        targets_ask(&fit->problem.compared, kind))
         return;
-    print_open(bar * found->pressure, bar * hypot(open, found->pressure_error), range);
+    print_open(factor * value, factor * hypot(open, error), range);
     mf_progress_print(to,
-                      "undetermined: g(r) alone does not determine the pressure: %s%s; give "
-                      "\"pressure\" as a second target to fix it",
-                      range, mf_units_suffix(units, "k_B T_0/lambda^d", unit));
+                      "undetermined: g(r) alone does not determine the %s: %s%s; give \"%s\" as a "
+                      "second target to fix it",
+                      name, range, mf_units_suffix(units, of, unit), name);
 }
 
 /// What relaxes so slowly that the samples hold few independent values of it.
@@ -248,7 +251,7 @@ void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result,
                           const char *folder) {
     print_verdict(to, fit, unknowns, result);
-    print_pressure(to, fit, result);
+    print_bulk(to, fit, result);
     print_slowest(to, &result->slowest);
     print_friction(to, fit, unknowns, result);
     if (result->status == STATUS_OK && mf_fit_engine_knows_more(fit))

@@ -239,8 +239,20 @@ static void report_shift(const struct verification *v, double scale, char *text,
                  v->shift.pressure < 0 ? "+" : "-", shift);
 }
 
-static void print_thermodynamics(struct progress *to, const struct units *units,
+/// ", density 32.61(2) nm^-3", where it may change.
+static void report_density(const struct fit_file *fit, const struct thermodynamics_summary *t,
+                           char *text, size_t size) {
+    const double factor = mf_units_factor(&fit->scene.units, "1/lambda^d");
+    char found[NUMBER_TEXT_SIZE], unit[UNITS_NAME_SIZE];
+    mf_number_text(factor * t->density, factor * t->density_error, found);
+    if (targets_ask(&fit->problem.compared, TARGET_DENSITY))
+        snprintf(text, size, ", density %s%s", found,
+                 mf_units_suffix(&fit->scene.units, "1/lambda^d", unit));
+}
+
+static void print_thermodynamics(struct progress *to, const struct fit_file *fit,
                                  const struct verification *v) {
+    const struct units *units = &fit->scene.units;
     const struct thermodynamics_summary *t = &v->thermodynamics;
     const double factor = mf_units_factor(units, "T_0");
     const double scale = mf_units_factor(units, "k_B T_0/lambda^d");
@@ -256,6 +268,7 @@ static void print_thermodynamics(struct progress *to, const struct units *units,
              mf_units_suffix(units, "k_B T_0/lambda^d", unit), shift);
     if (isnan(t->pressure)) // of another engine that has not told it
         pressure[0] = '\0';
+    report_density(fit, t, pressure + strlen(pressure), sizeof pressure - strlen(pressure));
     if (isnan(t->temperature) && isnan(t->temperature_configurational)) // no particles
         return;
     if (isnan(t->temperature)) // no velocities
@@ -294,7 +307,7 @@ static void print_state(struct progress *to, const struct fit_file *fit,
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
         print_diffusion(to, units, v);
     print_integrals(to, fit, v);
-    print_thermodynamics(to, units, v);
+    print_thermodynamics(to, fit, v);
     print_step(to, fit, v);
 }
 

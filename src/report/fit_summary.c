@@ -173,12 +173,16 @@ static void write_flat(struct json_writer *writer, enum unknown_kind kind,
 }
 
 /// What g(r) leaves open.
-static void write_ramp(struct json_writer *writer, const struct inverse_ramp *ramp) {
+static void write_ramp(struct json_writer *writer, const struct inverse_ramp *ramp,
+                       enum target_kind bulk) {
     if (!(ramp->error > 0))
         return;
     write_quantity(writer, "ramp_error", "k_B T_0", ramp->error);
-    write_quantity(writer, "ramp_pressure", "1/lambda^d", ramp->pressure);
-    write_quantity(writer, "pressure_left_open", "k_B T_0/lambda^d", ramp->pressure_open);
+    if (bulk == TARGET_PRESSURE) {
+        write_quantity(writer, "ramp_pressure", "1/lambda^d", ramp->bulk);
+        write_quantity(writer, "pressure_left_open", "k_B T_0/lambda^d", ramp->bulk_open);
+    } else
+        write_quantity(writer, "density_left_open", "1/lambda^d", ramp->bulk_open);
     write_known(writer, "directions", ramp->directions);
     write_known(writer, "directions_of", ramp->bins);
 }
@@ -370,6 +374,8 @@ static void write_verification(struct json_writer *writer, const struct fit_file
                          known_error(t->potential_energy_error));
     mf_json_put_measured(writer, "pressure", "k_B T_0/lambda^d", t->pressure,
                          known_error(t->pressure_error));
+    if (targets_ask(&fit->problem.compared, TARGET_DENSITY))
+        mf_json_put_measured(writer, "density", "1/lambda^d", t->density, t->density_error);
     write_quantity(writer, "pressure_of_time_step", "k_B T_0/lambda^d", v->shift.pressure);
     write_quantity(writer, "pressure_of_time_step_error", "k_B T_0/lambda^d", v->shift.error);
     if (v->by_engine)
@@ -427,7 +433,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (result->curve[kind])
             write_flat(writer, kind, unknowns, result);
-    write_ramp(writer, &result->ramp);
+    write_ramp(writer, &result->ramp, inverse_problem_bulk(&fit->problem));
     write_slowest(writer, &result->slowest);
     write_parameters(writer, fit, result);
     write_start(writer, unknowns, result);

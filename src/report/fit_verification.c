@@ -248,6 +248,7 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
     const bool several = fitted->bins.count < fitted->target[TARGET_RDF].count;
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const struct target_distance *pressure = &agreement[TARGET_PRESSURE].distance;
+    const struct target_distance *density = &agreement[TARGET_DENSITY].distance;
     if (targets_ask(fitted, TARGET_PRESSURE) &&
         !verify_agreement_holds(&agreement[TARGET_PRESSURE])) {
         char cause[FIT_STEP_TEXT_SIZE];
@@ -263,6 +264,16 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
             "the pressure of the verification, %.4g%.16s, is off by %.2g (statistical error %.2g): "
             "%s",
             bar * found->pressure, unit, bar * pressure->rms, bar * pressure->noise, cause);
+        return true;
+    }
+    if (targets_ask(fitted, TARGET_DENSITY) &&
+        !verify_agreement_holds(&agreement[TARGET_DENSITY])) {
+        const double volume = mf_units_factor(units, "1/lambda^d");
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the density of the verification, %.5g%.16s, is off by %.2g (statistical error "
+                 "%.2g): try more \"samples\", or a longer \"equilibration\" of both",
+                 volume * found->density, mf_units_suffix(units, "1/lambda^d", unit),
+                 volume * density->rms, volume * density->noise);
         return true;
     }
     if (targets_ask(fitted, mf_kirkwood_buff_kind()) &&

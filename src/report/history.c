@@ -149,7 +149,7 @@ static enum status write_timing(const struct history *history, const struct run_
     enum { BEFORE = 3, COLUMNS = BEFORE + SPENT_KINDS };
     static const char *const names[COLUMNS] = {
         "iteration",       "seconds[s]", "processor_seconds[s]", "equilibration[s]", "samples[s]",
-        "lost_samples[s]", "algebra[s]", "verification[s]",      "figures[s]"};
+        "lost_samples[s]", "algebra[s]", "verification[s]",      "figures[s]",       "engine[s]"};
     const size_t rows = history->iterations;
     OWNED double *values = NULL;
     struct data_column columns[COLUMNS];

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#define _GNU_SOURCE // pipe2
+#define _GNU_SOURCE // pipe2, wait4
 #include "report/program.h"
 
 #include "base/clock.h"
 #include "base/interrupt.h"
+#include "base/spent.h"
 #include "io/output.h"
 
 #include <errno.h>
@@ -16,6 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -127,13 +129,23 @@ static const char *last_line(char *text) {
     return newline ? newline + 1 : text;
 }
 
+/// Processor time of a command that has ended, and of those that it has waited for.
+static void account(const struct rusage *usage) {
+    const struct timeval *user = &usage->ru_utime, *system = &usage->ru_stime;
+    mf_spent_add(SPENT_ENGINE, (double)(user->tv_sec + system->tv_sec) +
+                                   1e-6 * (double)(user->tv_usec + system->tv_usec));
+}
+
 /// Wait until a program has ended, which one that has closed its streams may not have; false if it
 /// has not in time.
 static bool wait_for(pid_t child, const struct running *running, int *state) {
     const struct timespec pause = {.tv_nsec = 2000000};
     const bool patient = running == NULL || (isinf(running->end) && !running->stops);
     for (;;) {
-        const pid_t ended = waitpid(child, state, patient ? 0 : WNOHANG);
+        struct rusage usage;
+        const pid_t ended = wait4(child, state, patient ? 0 : WNOHANG, &usage);
+        if (ended == child && running && running->stops)
+            account(&usage);
         if (ended == child || (ended < 0 && errno != EINTR))
             return true;
         if (ended == 0 && is_over(running))

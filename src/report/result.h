@@ -25,8 +25,10 @@ struct result_summary {
     double temperature_configurational, temperature_configurational_error;
     double potential_energy, potential_energy_error;
     double pressure, pressure_error;
+    double density, density_error; ///< of fits at constant pressure
     double kirkwood_buff, kirkwood_buff_error, compressibility, compressibility_error;
-    double ramp_error, ramp_pressure, pressure_left_open, directions; ///< of an inversion
+    double ramp_error, ramp_pressure, pressure_left_open, density_left_open; ///< of an inversion
+    double directions;                                                       ///< the same
     double seed;
     double length_unit_nm; ///< λ
     struct units units;    ///< in which all of them are; no scale: unknown

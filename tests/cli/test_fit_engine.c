@@ -356,6 +356,75 @@ static void test_lammps_finds_the_potential(void **state) {
     assert_true(results_number("out/summary.json", "truth_rms_without_ramp") < 0.15);
 }
 
+/// At constant pressure boxes change, and the density is a target: the pressure that the truth has
+/// at its density leads back to that.
+static void test_lammps_meets_a_density(void **state) {
+    char text[512];
+    lammps_runs_skip_without(NULL);
+    snprintf(text, sizeof text,
+             "fix bath all langevin 1 1 0.3 ${seed}\nfix move all nph iso %.6g %.6g 1\n",
+             results_number("truth/summary.json", "pressure"),
+             results_number("truth/summary.json", "pressure"));
+    small_inputs_write(*state, "in.user", input,
+                       "fix bath all langevin 1 1 0.3 ${seed}\nfix move all nve\n", text);
+    small_inputs_write(*state, "ff.lmp", "# nothing else is known\n", NULL, NULL);
+    small_inputs_write(*state, "run.json", run, ENGINE,
+                       "\"engine\": {\"name\": \"lammps\", \"input\": \"in.user\", \"steps\": 20}");
+    small_inputs_change(*state, "run.json", "\"samples\"}}",
+                        "\"samples\"}, \"density\": {\"value\": 2, \"error\": 0.004}}");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", "lmp");
+    run_program_assert_code(&result, 0);
+    assert_non_null(strstr(result.err, ", density "));
+    assert_true(results_number("out/summary.json", "density_rmse") <
+                3 * results_number("out/summary.json", "density_noise"));
+    assert_true(results_number("out/summary.json", "rdf_rmse") < 0.02);
+    assert_true(results_number("out/summary.json", "truth_rms_without_ramp") < 0.15);
+    assert_true(fabs(results_number("out/summary.json", "truth_ramp")) <
+                5 * results_number("out/summary.json", "ramp_error"));
+}
+
+/// g(r) of a liquid does not know the shape of the box: one that is tilted as far as LAMMPS lets it
+/// gives the same potential.
+static void test_lammps_in_a_tilted_box(void **state) {
+    lammps_runs_skip_without(NULL);
+    small_inputs_write(*state, "in.user", input, "region box block 0 5 0 5 0 5",
+                       "region box prism 0 5 0 5 0 5 2.4 -2.4 2.4");
+    small_inputs_write(*state, "ff.lmp", "# nothing else is known\n", NULL, NULL);
+    small_inputs_write(*state, "run.json", run, ENGINE,
+                       "\"engine\": {\"name\": \"lammps\", \"input\": \"in.user\", \"steps\": 20}");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", "lmp", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_non_null(strstr(result.err, "it is tilted: what is found in such a box is verified by"));
+    small_inputs_change(*state, "run.json", "\"verification\": {",
+                        "\"verification\": {\"by\": \"mesofit\", ");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", "lmp", "--force");
+    run_program_assert_code(&result, 0);
+    assert_true(results_number("out/summary.json", "truth_rms_without_ramp") < 0.15);
+    assert_true(fabs(results_number("out/summary.json", "truth_ramp")) <
+                5 * results_number("out/summary.json", "ramp_error"));
+}
+
+static void test_densities_that_cannot_be_are_refused(void **state) {
+    static const struct {
+        const char *from, *to, *word;
+    } cases[] = {
+        {ENGINE ",", "", "target.density: mesofit samples at constant volume"},
+        {ENGINE, "\"engine\": {\"name\": \"lammps\"}", "give one of your own with `fix npt`"},
+        {"\"density\"", "\"pressure\": {\"value\": 1, \"error\": 1}, \"density\"",
+         "leave \"pressure\" out"},
+        {"\"verification\": {", "\"verification\": {\"by\": \"mesofit\", ",
+         "is at constant volume"}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "run.json", run, "\"samples\"}}",
+                           "\"samples\"}, \"density\": {\"value\": 2, \"error\": 0.004}}");
+        small_inputs_change(*state, "run.json", cases[k].from, cases[k].to);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--engine", COMMAND, "--quiet");
+        run_program_assert_code(&result, 2);
+        if (strstr(result.err, cases[k].word) == NULL)
+            fail_msg("%s: %s", cases[k].to, result.err);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_a_known_potential_is_found, enter, small_inputs_leave),
@@ -376,6 +445,10 @@ int main(void) {
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_lammps_runs_an_input, enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_lammps_finds_the_potential, enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_densities_that_cannot_be_are_refused, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_lammps_meets_a_density, enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_lammps_in_a_tilted_box, enter, small_inputs_leave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

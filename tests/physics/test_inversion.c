@@ -124,7 +124,7 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
     inversions_run(method, &problem, precision, phi, NULL, &step);
     compare_with_truth(&problem, phi, &ramp, &rms);
     print_message("found: rms without the ramp %.4f, ramp %.3f(%.3f), dP/dA %.2f\n", rms, ramp,
-                  step.ramp.error, step.ramp.pressure);
+                  step.ramp.error, step.ramp.bulk);
     assert_true(step.converged);
     assert_true(rms < potential_tolerance);
     assert_true(fabs(ramp) < (with_pressure ? ramp_tolerance_with_pressure : ramp_tolerance));
@@ -155,7 +155,7 @@ static void test_imc_and_auto_have_the_pressure_when_g_reaches_far(void **state)
     for (int run = 0; run < (length_is_long() ? 4 : 1); run++) {
         problem.seed = 5 + run / 2;
         inversions_run(run % 2 ? &mf_automatic : &mf_imc, &problem, 0.003, phi, NULL, &step);
-        const double found = step.extra[4], open = step.ramp.pressure_open;
+        const double found = step.extra[4], open = step.ramp.bulk_open;
         print_message("pressure %.2f(%.2f), truth %.2f\n", found, open, target.pressure);
         assert_true(step.converged);
         assert_true(fabs(found - target.pressure) < 2.5 * open);

@@ -81,7 +81,7 @@ static void measure(double c, bool found, struct inversion *inversion) {
 static double pressure_with(double c) {
     struct inversion inversion;
     measure(c, false, &inversion);
-    const double pressure = inversion.state->pressure.value;
+    const double pressure = inversion.state->bulk.value;
     mf_inversion_destroy(&inversion);
     return pressure;
 }
@@ -96,16 +96,15 @@ static void test_slope_of_the_pressure_is_that_of_simulations(void **state) {
     const struct inversion_state *at = inversion.state;
     double predicted = 0;
     for (size_t b = at->grid.pairs_known; b < at->grid.known; b++)
-        predicted +=
-            2 * at->pressure.slope[b] * energy_at(amount, at->grid.r[at->grid.known_point[b]]);
+        predicted += 2 * at->bulk.slope[b] * energy_at(amount, at->grid.r[at->grid.known_point[b]]);
     const double found = pressure_with(amount) - pressure_with(-amount);
-    print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at->pressure.value,
-                  at->pressure.error, predicted, found);
+    print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at->bulk.value,
+                  at->bulk.error, predicted, found);
     assert_close_relative(predicted, found, length_is_long() ? 0.05 : 0.1);
     // The straight line of f as a potential of pairs: as much pressure, and no S.
     double shared = 0, all = 0;
     for (size_t b = 0; b < at->grid.known; b++) {
-        const double part = at->pressure.slope[b] * at->grid.shared.change[b];
+        const double part = at->bulk.slope[b] * at->grid.shared.change[b];
         shared += part;
         all += fabs(part);
     }

@@ -65,7 +65,7 @@ static double pressure_when_changed(const struct fluid *fluid, const struct rdf_
                  amount * change_of(kind, at->grid.r[k], mf_rdf_bins_range(bins));
     assert_ok(mf_sampled_create(&curve, at->grid.r, phi, at->grid.points));
     measure(fluid, bins, g, &curve, &changed);
-    const double pressure = changed.state->pressure.value;
+    const double pressure = changed.state->bulk.value;
     mf_inversion_destroy(&changed);
     mf_curve_clear(&curve);
     return pressure;
@@ -83,12 +83,12 @@ static void check_slopes(const struct fluid *fluid, const struct rdf_bins *bins,
         double predicted = 0;
         for (size_t b = 0; b < at->grid.known; b++)
             predicted +=
-                2 * amount * at->pressure.slope[b] *
+                2 * amount * at->bulk.slope[b] *
                 change_of(kind, at->grid.r[at->grid.known_point[b]], mf_rdf_bins_range(bins));
         const double found = pressure_when_changed(fluid, bins, g, &from, kind, amount) -
                              pressure_when_changed(fluid, bins, g, &from, kind, -amount);
-        print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n",
-                      at->pressure.value, at->pressure.error, predicted, found);
+        print_message("pressure %.3f(%.3f), change predicted %.4f, found %.4f\n", at->bulk.value,
+                      at->bulk.error, predicted, found);
         assert_close_relative(predicted, found, length_is_long() ? tolerance : tolerance_in_short);
     }
     mf_inversion_destroy(&from);

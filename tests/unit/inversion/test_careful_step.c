@@ -69,11 +69,11 @@ static void check_pressure(const struct inverse_method *method,
     const struct inversion_state *state = inversion.state;
     const struct potential_grid *grid = &state->grid;
     for (size_t a = 0; a < grid->known; a++)
-        change += state->pressure.slope[a] * inversion.course.best.step[grid->known_point[a]];
+        change += state->bulk.slope[a] * inversion.course.best.step[grid->known_point[a]];
     print_message("%s of %zu pair types: from %.3f to %.3f\n", method->name, grid->pairs,
-                  state->pressure.value, state->pressure.value + change);
-    assert_true(fabs(state->pressure.value - wanted) > 1);
-    assert_close(state->pressure.value + change, wanted, 1e-6);
+                  state->bulk.value, state->bulk.value + change);
+    assert_true(fabs(state->bulk.value - wanted) > 1);
+    assert_close(state->bulk.value + change, wanted, 1e-6);
     mf_inversion_destroy(&inversion);
 }
 

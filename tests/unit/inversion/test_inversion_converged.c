@@ -29,7 +29,7 @@ static struct inversion *make_end(struct end *end, size_t groups) {
                       .assessment = {.sections = 1, .section[0] = {.misfit = 1.5, .probable = 2}},
                       .course = {.most_probable = true,
                                  .band.drifts = {.ramp = {.drift = -0.04, .open = 0.1},
-                                                 .pressure[0] = {.drift = 0.4, .open = 1}},
+                                                 .bulk[0] = {.drift = 0.4, .open = 1}},
                                  .progress.best.precise = true}}};
     return &end->inversion;
 }
@@ -45,9 +45,9 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
     inversion->course.band.drifts.ramp.drift = -0.06;
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.drifts.ramp.drift = -0.04;
-    inversion->course.band.drifts.pressure[0].drift = 0.9;
+    inversion->course.band.drifts.bulk[0].drift = 0.9;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.drifts.pressure[0].drift = 0.4;
+    inversion->course.band.drifts.bulk[0].drift = 0.4;
     assert_true(mf_inversion_has_converged(inversion, true));
     assert_true(inversion->course.moved_since_met); // since it agreed for the first time
     inversion = make_end(&end, 0);
@@ -69,12 +69,12 @@ static void test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel(v
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->assessment.section[0].misfit = 1.5;
     inversion->course.band.drifts.ramp.drift = -0.2;
-    inversion->course.band.drifts.pressure[0].drift = 0.7;
+    inversion->course.band.drifts.bulk[0].drift = 0.7;
     for (int k = 0; k < 4; k++)
         assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.drifts.ramp.drift = 0.12;
     assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->course.band.drifts.pressure[0].drift = 0.3;
+    inversion->course.band.drifts.bulk[0].drift = 0.3;
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.drifts.ramp.drift = -0.15; // the last three
     assert_true(mf_inversion_has_converged(inversion, true));
@@ -108,7 +108,7 @@ static void test_pressure_of_each_state_must_settle(void **state) {
     (void)state;
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
-    struct inversion_band_drift *pressure = inversion->course.band.drifts.pressure;
+    struct inversion_band_drift *pressure = inversion->course.band.drifts.bulk;
     struct inversion_state two[2] = {end.state, end.state};
     inversion->state = two;
     inversion->states = 2;

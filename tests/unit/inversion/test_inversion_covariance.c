@@ -102,7 +102,7 @@ static void test_inversion_covariance_takes_no_noise_for_information(void **unus
     for (uint64_t seed = 1; seed <= 4; seed++) {
         sample(&fluid, seed, SAMPLES, sampled);
         assert_ok(mf_inversion_covariance_find(&blocks, sampled, fluid.mean, SAMPLES, covariance,
-                                               shared, &functions));
+                                               shared, &functions, NULL));
         as_sampled += information(&fluid, sampled) / (4 * left * left);
         told += information(&fluid, covariance) / (4 * left * left);
     }
@@ -126,7 +126,7 @@ static void test_inversion_covariance_of_many_samples_is_right(void **unused) {
     make(&fluid);
     sample(&fluid, 9, MANY, sampled);
     assert_ok(mf_inversion_covariance_find(&blocks, sampled, fluid.mean, MANY, covariance, shared,
-                                           &functions));
+                                           &functions, NULL));
     for (size_t a = 0; a < BINS; a++)
         for (size_t b = 0; b < BINS; b++)
             along += fluid.wave[a] * covariance[a * BINS + b] * fluid.wave[b];
@@ -143,8 +143,8 @@ static void test_inversion_covariance_of_few_bins_is_as_sampled(void **unused) {
     static const double sampled[] = {4, -1, 0, -1, 9, 0, 0, 0, 0}, mean[] = {5, 8, 0};
     double covariance[9], shared[3];
     size_t functions;
-    assert_ok(
-        mf_inversion_covariance_find(&blocks, sampled, mean, 50, covariance, shared, &functions));
+    assert_ok(mf_inversion_covariance_find(&blocks, sampled, mean, 50, covariance, shared,
+                                           &functions, NULL));
     for (size_t k = 0; k < 9; k++)
         assert_close(covariance[k], sampled[k], 1e-12);
     assert_int_equal(functions, 3);

@@ -54,9 +54,9 @@ static void make(struct made *made) {
         state->inefficiency = 1;
         state->excess = made->excess[s];
         state->variance = made->variance[s];
-        state->pressure.slope = made->slope[s];
-        state->pressure.value = 1;
-        state->assessment.pressure_reach = pressure_error;
+        state->bulk.slope = made->slope[s];
+        state->bulk.value = 1;
+        state->assessment.bulk_reach = pressure_error;
     }
     made->state[1].grid.seen[UNSEEN] = false;
 }
@@ -82,7 +82,7 @@ static double right_side(const struct made *made, size_t a, double factor) {
             if (made->state[s].grid.seen[n])
                 sum += made->covariance[s][n * KNOWN + a] * made->excess[s][n] /
                        (temperature[s] * factor * made->variance[s][n]);
-        sum += made->slope[s][a] * (made->pressure[s] - made->state[s].pressure.value) /
+        sum += made->slope[s][a] * (made->pressure[s] - made->state[s].bulk.value) /
                (pressure_error * pressure_error);
     }
     return sum;

@@ -322,9 +322,9 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
             made.block[k][b * NUMBERS + BINS + SAMPLER_VIRIAL] +=
                 12.0 * (double)b / REPLICAS_BLOCKS;
     problem.targets.target[TARGET_PRESSURE] = (struct target){.count = 1, .value = &wanted};
-    samples->pressure.value = -6;
+    samples->bulk.value = -6;
     assert_false(mf_inversion_is_far_beyond_drift(samples));
-    samples->pressure.value = -16;
+    samples->bulk.value = -16;
     assert_true(mf_inversion_is_far_beyond_drift(samples));
     gsl_rng_free(rng);
 }

@@ -75,7 +75,7 @@ static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     struct fit fit;
     struct inversion *inversion = begin(&fit, true);
     inversion->assessment.distance[TARGET_PRESSURE] = (struct target_distance){.rms = 1};
-    inversion->assessment.pressure_reach = 1;
+    inversion->assessment.bulk_reach = 1;
     assert_true(keeps(inversion, 0.01, 0.01));
     inversion->assessment.distance[TARGET_PRESSURE].rms = 3.1;
     assert_true(keeps(inversion, 0.01, 0.01)); // sqrt(1 + 9.6) of sqrt(2) + 2

@@ -10,6 +10,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { BINS = 24, POINTS = 3 * BINS };
@@ -229,6 +230,70 @@ static void test_inversion_response_bears_what_the_noise_of_more_bins_hides(void
     mf_inversion_response_clear(&state.response);
 }
 
+/// Pairs that an expansion parts, in a volume that fluctuates by 2 %: of the same samples the
+/// response of G, the counts with their volume, to the potential of the pairs S as they are is
+/// cov(G, S), and that of the density cov(ρ, S).
+static void test_inversion_response_follows_the_density_at_constant_pressure(void **unused) {
+    (void)unused;
+    enum { OWN = 3, NUMBERS = OWN + SAMPLER_SUMS, SAMPLES = 20000, PAIRS = 400 };
+    static size_t known[] = {0, 1, 2}, known_of = OWN;
+    static double ideal[] = {40, 60, 80}, slope[OWN];
+    static const double phi[OWN] = {0}, share[OWN] = {0.1, 0.15, 0.2};
+    struct inverse_problem problem = {.scene.temperature = temperature};
+    problem.compared.target[TARGET_DENSITY].count = 1;
+    struct inversion_state state = {.problem = &problem,
+                                    .phi = phi,
+                                    .bins = OWN,
+                                    .box = {.dimensions = 3, .length = {5, 5, 5}},
+                                    .composition = mf_composition_of_one(100),
+                                    .grid = {.known = OWN,
+                                             .pairs_known = OWN,
+                                             .pairs = 1,
+                                             .known_bin = known,
+                                             .known_point = known,
+                                             .known_of = &known_of,
+                                             .blocks = 1},
+                                    .target.ideal = ideal,
+                                    .inefficiency = 1,
+                                    .bulk.slope = slope};
+    struct comoments exact;
+    unsigned seed = 5;
+    assert_ok(mf_comoments_init(&state.replicas.counts, NUMBERS));
+    assert_ok(mf_comoments_init(&exact, 2 * OWN + 1));
+    for (int n = 0; n < SAMPLES; n++) {
+        double normal = -6, sample[NUMBERS] = {0}, both[2 * OWN + 1];
+        for (int k = 0; k < 12; k++)
+            normal += (double)rand_r(&seed) / RAND_MAX;
+        const double w = 1 / (1 + 0.02 * normal);
+        for (int a = 0; a < OWN; a++) {
+            int pairs = 0;
+            for (int k = 0; k < PAIRS; k++)
+                pairs += (double)rand_r(&seed) / RAND_MAX < share[a] * w * (1 + 5 * (w - 1));
+            sample[a] = both[a] = pairs / w;
+            both[OWN + a] = pairs;
+        }
+        sample[OWN + SAMPLER_DENSITY] = both[2 * OWN] = w;
+        mf_comoments_add(&state.replicas.counts, sample);
+        mf_comoments_add(&exact, both);
+    }
+    assert_ok(mf_inversion_response_init(&state));
+    assert_ok(mf_inversion_response_add(&state));
+    assert_ok(mf_inversion_bulk_slopes(&state));
+    const double *response = mf_inversion_response_values(&state);
+    for (size_t a = 0; a < OWN; a++)
+        for (size_t b = 0; b < OWN; b++)
+            assert_close(response[a * OWN + b], mf_comoments_covariance(&exact, a, OWN + b), 0.3);
+    assert_true(response[1] > 2); // which without the density is 0
+    for (size_t b = 0; b < OWN; b++)
+        assert_close_relative(
+            slope[b],
+            -100 / 125.0 * mf_comoments_covariance(&exact, 2 * OWN, OWN + b) / temperature, 0.01);
+    assert_true(slope[0] < 0);
+    mf_inversion_response_clear(&state.response);
+    mf_comoments_clear(&state.replicas.counts);
+    mf_comoments_clear(&exact);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_response_tells_how_lengths_follow_their_values),
@@ -236,6 +301,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_response_weighs_independent_samples),
         cmocka_unit_test(test_inversion_response_forgets_what_has_changed_along_the_way),
         cmocka_unit_test(test_inversion_response_bears_what_the_noise_of_more_bins_hides),
+        cmocka_unit_test(test_inversion_response_follows_the_density_at_constant_pressure),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

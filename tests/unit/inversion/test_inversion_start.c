@@ -110,9 +110,9 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     make(&made, INVERSION_FROM_HNC);
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
     made.inversion.assessment.distance[TARGET_RDF].rms = 0.5;
-    made.inversion.state->pressure.value = 0.1;
+    made.inversion.state->bulk.pressure = 0.1;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
-    made.inversion.state->pressure.value = -4;
+    made.inversion.state->bulk.pressure = -4;
     assert_true(mf_inversion_start_is_poor(&made.inversion, true));
     made.inversion.assessment.distance[TARGET_RDF].rms = 0.01;
     assert_false(mf_inversion_start_is_poor(&made.inversion, true));
@@ -277,8 +277,8 @@ static void test_inversion_band_counts_the_ramp_that_is_asked_for(void **state) 
                   twice.ramp.drift, twice.ramp.open);
     assert_close_relative(twice.ramp.drift, 2 * once.ramp.drift, 0.03);
     assert_close_relative(twice.ramp.open, once.ramp.open, 1e-6);
-    assert_close_relative(twice.pressure[0].drift, 2 * once.pressure[0].drift, 0.03);
-    assert_close_relative(twice.pressure[0].open, once.pressure[0].open, 1e-6);
+    assert_close_relative(twice.bulk[0].drift, 2 * once.bulk[0].drift, 0.03);
+    assert_close_relative(twice.bulk[0].open, once.bulk[0].open, 1e-6);
     clear(&made);
 }
 
@@ -302,19 +302,19 @@ static void test_inversion_band_looks_at_the_pressures_of_all_states(void **stat
     assert_non_null(other);
     assert_ok(mf_inversion_iterate(inversion, &step, &listener));
     for (size_t a = 0; a < known; a++) {
-        first->pressure.slope[a] = mf_potential_grid_ramp(&first->grid, first->grid.known_point[a]);
+        first->bulk.slope[a] = mf_potential_grid_ramp(&first->grid, first->grid.known_point[a]);
         other[a] = a == known / 2;
     }
-    double *slope[2] = {first->pressure.slope, other};
+    double *slope[2] = {first->bulk.slope, other};
     states[0] = states[1] = *first;
     states[1].bins = 0; // room is for the samples of one
     inversion->state = states;
     inversion->states = 2;
     for (int n = 0; n < 2; n++) {
-        states[0].pressure.slope = slope[n];
-        states[1].pressure.slope = slope[1 - n];
+        states[0].bulk.slope = slope[n];
+        states[1].bulk.slope = slope[1 - n];
         assert_ok(mf_inversion_band_find(inversion));
-        drifts[n] = inversion->course.band.drifts.pressure[0];
+        drifts[n] = inversion->course.band.drifts.bulk[0];
         farthest[n] = mf_inversion_band_farthest(inversion);
     }
     // A verification judges each state by the noise of its own samples.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "measure/frame_box.h"
+#include "trajectory/frame_box.h"
 
 #include "base/statistics.h"
 #include "base/visible.h"

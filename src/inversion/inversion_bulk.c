@@ -21,27 +21,60 @@ static double find_change(const struct inversion_state *state) {
     return sqrt(squares / (double)grid->known);
 }
 
-void mf_inversion_pressure_measure(struct inversion_state *state) {
+enum target_kind mf_inversion_bulk_kind(const struct inversion_state *state) {
+    return inverse_problem_bulk(state->problem);
+}
+
+static const struct target *target_of(const struct inversion_state *state) {
+    return &state->problem->targets.target[mf_inversion_bulk_kind(state)];
+}
+
+bool mf_inversion_bulk_is_asked(const struct inversion_state *state) {
+    return target_of(state)->count > 0;
+}
+
+double mf_inversion_bulk_missing(const struct inversion_state *state) {
+    return *target_of(state)->value - state->bulk.value;
+}
+
+/// Density where V is that of the scene [1/λ^d].
+static double density_unit(const struct inversion_state *state) {
+    return (double)mf_composition_particles(&state->composition) / mf_box_volume(&state->box);
+}
+
+static void measure_pressure(struct inversion_state *state) {
     const struct replicas_mean virial =
         mf_replicas_mean(&state->replicas, SAMPLER_VIRIAL, state->inefficiency);
     const double unit = virial_unit(state);
     const double ideal =
         (double)mf_composition_particles(&state->composition) * state->problem->scene.temperature;
-    state->pressure.value = (state->box.dimensions * ideal + virial.mean) / unit;
-    state->pressure.error = virial.error / unit;
-    const struct target *target = &state->problem->targets.target[TARGET_PRESSURE];
-    if (target->count == 0)
-        return;
-    struct target_distance *distance = &state->assessment.distance[TARGET_PRESSURE];
-    *distance = mf_targets_distance(target, &state->pressure.value, &state->pressure.error);
-    state->assessment.pressure_reach =
-        hypot(distance->noise, 2 * find_change(state) * distance->rms);
+    state->bulk.pressure = (state->box.dimensions * ideal + virial.mean) / unit;
+    state->bulk.pressure_error = virial.error / unit;
 }
 
-double mf_inversion_pressure_shift(const struct inversion_state *state) {
-    const double square =
-        mf_inversion_equilibrium_shift(&state->replicas, state->bins + SAMPLER_VIRIAL);
-    return sqrt(fmax(square, 0)) / virial_unit(state);
+void mf_inversion_bulk_measure(struct inversion_state *state) {
+    struct inversion_bulk *bulk = &state->bulk;
+    measure_pressure(state);
+    bulk->value = bulk->pressure;
+    bulk->error = bulk->pressure_error;
+    if (mf_inversion_bulk_kind(state) == TARGET_DENSITY) {
+        const struct replicas_mean density =
+            mf_replicas_mean(&state->replicas, SAMPLER_DENSITY, state->inefficiency);
+        bulk->value = density_unit(state) * density.mean;
+        bulk->error = density_unit(state) * density.error;
+    }
+    if (!mf_inversion_bulk_is_asked(state))
+        return;
+    struct target_distance *distance = &state->assessment.distance[mf_inversion_bulk_kind(state)];
+    *distance = mf_targets_distance(target_of(state), &bulk->value, &bulk->error);
+    state->assessment.bulk_reach = hypot(distance->noise, 2 * find_change(state) * distance->rms);
+}
+
+double mf_inversion_bulk_shift(const struct inversion_state *state) {
+    const bool density = mf_inversion_bulk_kind(state) == TARGET_DENSITY;
+    const double square = mf_inversion_equilibrium_shift(
+        &state->replicas, state->bins + (density ? SAMPLER_DENSITY : SAMPLER_VIRIAL));
+    return sqrt(fmax(square, 0)) * (density ? density_unit(state) : 1 / virial_unit(state));
 }
 
 /// Σ_a S_a ∂(−r_a U'(r_a))/∂U_b of bond lengths, U' being a central difference: what the value of
@@ -83,7 +116,7 @@ static double group_virial(const struct inversion_state *state, size_t b) {
     return 0;
 }
 
-enum status mf_inversion_pressure_slopes(struct inversion_state *state) {
+static enum status find_pressure_slopes(struct inversion_state *state) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = &state->grid;
     const struct comoments *counts = &state->replicas.counts;
@@ -98,30 +131,54 @@ enum status mf_inversion_pressure_slopes(struct inversion_state *state) {
         slope += group_virial(state, b);
         for (size_t a = 0; a < grid->pair_bins; a++)
             slope += counts->mean[a] * virial[a * grid->known + b];
-        state->pressure.slope[b] = slope / virial_unit(state);
+        state->bulk.slope[b] = slope / virial_unit(state);
     }
 done:
     mf_memory_free(virial);
     return status;
 }
 
-double mf_inversion_pressure_ramp_slope(const struct inversion_state *state) {
+/// In units of 1/V of the scene the pairs of a bin are S = G w, with G as they are counted and w
+/// that of the sample (inversion/sampler.h): cov(w, S) = ⟨w⟩ cov(w, G) + ⟨G⟩ var w.
+static void find_density_slopes(struct inversion_state *state) {
+    const struct potential_grid *grid = &state->grid;
+    const struct comoments *counts = &state->replicas.counts;
+    const size_t w = state->bins + SAMPLER_DENSITY;
+    const double variance = mf_comoments_covariance(counts, w, w);
+    for (size_t b = 0; b < grid->known; b++) {
+        const size_t bin = grid->known_bin[b];
+        const double covariance = mf_comoments_covariance(counts, w, bin);
+        const double with_pairs = b < grid->pairs_known
+                                      ? counts->mean[w] * covariance + counts->mean[bin] * variance
+                                      : covariance;
+        state->bulk.slope[b] =
+            -density_unit(state) * with_pairs / state->problem->scene.temperature;
+    }
+}
+
+enum status mf_inversion_bulk_slopes(struct inversion_state *state) {
+    if (mf_inversion_bulk_kind(state) == TARGET_PRESSURE)
+        return find_pressure_slopes(state);
+    find_density_slopes(state);
+    return STATUS_OK;
+}
+
+double mf_inversion_bulk_ramp_slope(const struct inversion_state *state) {
     const struct potential_grid *grid = &state->grid;
     double slope = 0;
     for (size_t b = 0; b < grid->known; b++)
-        slope += state->pressure.slope[b] * mf_potential_grid_ramp(grid, grid->known_point[b]);
+        slope += state->bulk.slope[b] * mf_potential_grid_ramp(grid, grid->known_point[b]);
     return slope;
 }
 
-void mf_inversion_pressure_add_ramp(const struct inversion_state *state, double *step) {
+void mf_inversion_bulk_add_ramp(const struct inversion_state *state, double *step) {
     const struct potential_grid *grid = &state->grid;
-    const struct targets *targets = &state->problem->targets;
-    if (!targets_ask(targets, TARGET_PRESSURE) || grid->pairs == 0)
+    if (!mf_inversion_bulk_is_asked(state) || grid->pairs == 0)
         return;
-    double missing = *targets->target[TARGET_PRESSURE].value - state->pressure.value;
+    double missing = mf_inversion_bulk_missing(state);
     for (size_t b = 0; b < grid->known; b++)
-        missing -= state->pressure.slope[b] * step[grid->known_point[b]];
-    const double amplitude = missing / mf_inversion_pressure_ramp_slope(state);
+        missing -= state->bulk.slope[b] * step[grid->known_point[b]];
+    const double amplitude = missing / mf_inversion_bulk_ramp_slope(state);
     for (size_t n = 0; n < grid->known; n++)
         step[grid->known_point[n]] +=
             amplitude * mf_potential_grid_ramp(grid, grid->known_point[n]);
