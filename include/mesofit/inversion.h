@@ -73,7 +73,8 @@ struct mesofit_samples {
     const double *pressure, *temperature, *pair_energy;
 };
 
-/** Fails: BAD_INPUT for a number that is none, or positions that are in another unit; IO. */
+/** Fails: BAD_INPUT for a number that is none; IO. Positions that are in another unit are noticed
+ * when the inversion goes on. */
 MESOFIT_API enum mesofit_status mesofit_inversion_tell(struct mesofit_inversion *inversion,
                                                        size_t number,
                                                        const struct mesofit_samples *samples);

@@ -97,7 +97,8 @@ void mf_export_checks_pressure(const struct export_job *job, const char *command
         return; // LAMMPS takes pressures of the plane for those of space
     fprintf(stream, "At constant pressure (in %s), as a check of the density:\n\n%s\n",
             units->pressure_name, commands);
-    if (!isfinite(pressure))
+    if (!isfinite(pressure) ||
+        model->partial) // then the pressure is that of forces that are missing
         return;
     fprintf(stream, "The result has %.5g %s at ", pressure, units->pressure_name);
     print_density(job, 1, stream);

@@ -178,6 +178,8 @@ static void print_measured(const struct export_job *job, const char *prefix, FIL
 }
 
 const char *mf_export_dynamics_kept(const struct export_job *job) {
+    if (job->model->partial)
+        return "It samples the forces that are here at their\ntemperature.";
     return export_model_has_friction(job->model)
                ? "It keeps g(r), energy and pressure; the dynamics\nis not the result's: diffusion "
                  "and all else that moves differs."
@@ -219,7 +221,7 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
     const double diffusion = units->length * units->length / units->time;
     fprintf(stream, "%sWhat of the dynamics goes to %s:\n", prefix, job->engine->title);
     fprintf(stream, "%sstructure  phi as tables: %s\n", prefix,
-            job->model->partial ? "alone, without the forces that the engine of the fit knew"
+            job->model->partial ? "alone, without what else the engine of the fit had"
                                 : "g(r), energy and pressure are those of the result");
     mf_export_densities_print(&job->densities, job->model, &job->units, prefix, stream);
     print_friction(job, prefix, stream);

@@ -241,9 +241,12 @@ static void print_readme(const struct export_job *job, FILE *stream) {
             units->time * model->setup.time_step, units->time_name, job->why_step);
     mf_export_checks_tables(job, stream);
     const bool measured = isfinite(model->temperature.value) || isfinite(model->pressure.value);
-    fprintf(stream, measured ? "\nWhat mesofit itself measured of the result:\n\n"
-                             : "\nThe result was not simulated by mesofit to its end: nothing was "
-                               "measured of it.\n");
+    fprintf(stream,
+            measured && model->partial
+                ? "\nWhat was measured of the result, with the forces that are missing here:\n\n"
+            : measured ? "\nWhat mesofit itself measured of the result:\n\n"
+                       : "\nThe result was not simulated by mesofit to its end: nothing was "
+                         "measured of it.\n");
     print_number(stream, "temperature", &model->temperature, units->temperature,
                  units->temperature_name);
     print_number(stream, "pressure   ", &model->pressure, units->pressure, units->pressure_name);

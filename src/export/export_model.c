@@ -127,6 +127,7 @@ static const struct field summary_fields[] = {
     NUMBER("temperature_configurational_error", configurational.error, "T_0"),
     NUMBER("pressure", pressure.value, "k_B T_0/lambda^d"),
     NUMBER("pressure_error", pressure.error, "k_B T_0/lambda^d"),
+    NUMBER("density", density, "1/lambda^d"),
     NUMBER("compressibility", compressibility.value, "1"),
     NUMBER("compressibility_error", compressibility.error, "1"),
     NUMBER("diffusion", diffusion.value, "lambda^2/tau"),
@@ -179,6 +180,13 @@ static enum status read_summary(struct reading *reading) {
         struct json_object motion = mf_json_child(&root, "motion", true);
         mf_json_fields(&motion, motion_fields, model);
     }
+    // At constant pressure the box is that of the density which came out.
+    if (model->fit && model->density > 0)
+        model->setup.box = mf_box_scaled(&model->setup.box,
+                                         (double)model->setup.placement.count /
+                                             (model->density * mf_box_volume(&model->setup.box)));
+    else
+        model->density = NAN;
     if (model->verified_step > 0) // what the verification chose, if that was left to it
         model->setup.time_step = model->verified_step;
     read_numbers(reading, &root);

@@ -45,10 +45,11 @@ struct export_model {
     size_t rdf_bins;                     ///< of g(r), equally wide from 0 on
     double rdf_range;                    ///< where they end [λ]
     struct export_number temperature, pressure; ///< of the result
-    struct export_number compressibility;       ///< ρ k_B T κ_T of it, likewise
-    struct export_number diffusion;             ///< D of it, if it was measured
-    struct export_number configurational;       ///< its configurational temperature
-    double verified_step;                       ///< time step of the verification; or NAN [τ]
+    double density; ///< that came out at constant pressure [1/λ^d]; NaN: the box is the scene's
+    struct export_number compressibility; ///< ρ k_B T κ_T of it, likewise
+    struct export_number diffusion;       ///< D of it, if it was measured
+    struct export_number configurational; ///< its configurational temperature
+    double verified_step;                 ///< time step of the verification; or NAN [τ]
     char warning[256]; ///< what a person should know of the result; "" if nothing
 };
 

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <sys/stat.h>
 
-/// The configuration that the result's simulation ended with, if it left one, as the start of
-/// another: the columns of configuration.tsv.
+/// The configuration that the result's simulation ended with, if it left one in this box, as the
+/// start of another: the columns of configuration.tsv.
 static enum status read_start(struct export_model *model, struct export_columns *columns,
                               struct simulation_start *start) {
     static const struct export_column wanted[] = {{"x", "lambda", true},
@@ -25,7 +25,7 @@ static enum status read_start(struct export_model *model, struct export_columns 
     struct stat found;
     *start = model->scene.start;
     snprintf(path, sizeof path, "%.3900s/configuration.tsv", model->folder);
-    if (stat(path, &found) != 0)
+    if (stat(path, &found) != 0 || isfinite(model->density)) // a frame of another box
         return STATUS_OK;
     TRY(mf_export_columns_read(columns, path, &model->scene.units, wanted));
     if (columns->rows != (size_t)model->setup.placement.count)

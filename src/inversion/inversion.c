@@ -40,6 +40,7 @@ enum status mf_inversion_observe(struct inversion *inversion,
                                 &(struct inverse_listener){report_of_state, &sharing}));
         if (state->assessment.unstable)
             continue;
+        TRY(mf_inversion_bulk_check(state));
         TRY(mf_inversion_response_assess(state));
         if (state->assessment.unequilibrated.found)
             state->pool.samples = 0;

@@ -52,6 +52,17 @@ static void measure_pressure(struct inversion_state *state) {
     state->bulk.pressure_error = virial.error / unit;
 }
 
+enum status mf_inversion_bulk_check(const struct inversion_state *state) {
+    static const double rounding = 1e-9;
+    if (mf_inversion_bulk_kind(state) != TARGET_DENSITY ||
+        state->bulk.error > rounding * state->bulk.value)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "target.density: the frames of the engine all have one volume: it must hold "
+        "the pressure, as LAMMPS by \"fix npt\", or leave out \"density\"");
+}
+
 void mf_inversion_bulk_measure(struct inversion_state *state) {
     struct inversion_bulk *bulk = &state->bulk;
     measure_pressure(state);

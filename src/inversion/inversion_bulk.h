@@ -21,6 +21,10 @@ enum target_kind mf_inversion_bulk_kind(const struct inversion_state *state);
 bool mf_inversion_bulk_is_asked(const struct inversion_state *state);
 double mf_inversion_bulk_missing(const struct inversion_state *state);
 
+/// Whether a density that is a target can move. Fails: BAD_INPUT if the volume of all samples is
+/// one.
+enum status mf_inversion_bulk_check(const struct inversion_state *state) MUST_USE;
+
 /// Value and error, the distance from the target, and how near to it a step may be asked to come:
 /// not nearer than the noise, nor, where S is to change by the part δ of itself, than 2 δ of what
 /// is missing. By so much the slopes change on the way, as covariances of counts do, and a step

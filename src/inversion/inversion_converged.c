@@ -53,7 +53,7 @@ static bool stretch_agrees(const struct inversion_state *state, const double *ex
         sum += pow(excess[a] - factor * wanted, 2) / state->variance[a];
         followed += 1 - mf_inversion_target_variance(state, a) / state->variance[a];
     }
-    return sum <= (seen + followed) * mf_inversion_probable(state, stretch, chance);
+    return seen == 0 || sum <= (seen + followed) * mf_inversion_probable(state, stretch, chance);
 }
 
 /// The first bin of a stretch of g(r) that does not; or SIZE_MAX.

@@ -106,7 +106,7 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
     TRY(prepare(inversion, problem, rule->coefficients ? rule->coefficients(parameters) : NULL));
     inversion->course.progress.chosen_damping = inversion->parameters.damping;
     // The samplers of each state are made with the start of its own target, which says how stiff
-    // its bonds are. The first state's is left as the start of all.
+    // its bonds are.
     for (size_t s = inversion->states; s-- > 0;) {
         struct inversion_state *state = &inversion->state[s];
         TRY(mf_inversion_start(state, inversion->course.phi));
@@ -115,7 +115,11 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
                 ? status
                 : mf_status_prefix(status, "states.%s", state->problem->name));
     }
-    return mf_inversion_reference(inversion->state, inversion->course.reference);
+    struct inversion_state *widest =
+        &inversion->state[mf_inversion_states_widest(inversion->state, inversion->states)];
+    if (widest > inversion->state) // that of the first state was made last
+        TRY(mf_inversion_start(widest, inversion->course.phi));
+    return mf_inversion_reference(widest, inversion->course.reference);
 }
 
 double *mf_inversion_damping(void *memory) {

@@ -33,6 +33,14 @@ static void report_groups(const struct inversion *inversion, char reason[INVERSE
              inversion->course.progress.best.own_noise, inversion->parameters.precision);
 }
 
+static void report_stretch(double r, char reason[INVERSE_REASON_SIZE]) {
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "g(r) agrees as a whole, but not from r = %.3g" STATUS_LENGTH
+             " on: try more \"iterations\" or \"samples\", and see whether the errors of the "
+             "target are right there",
+             r);
+}
+
 /// Why a fit whose g(r) agrees has not converged.
 static void report_what_is_missing(const struct inversion *inversion,
                                    char reason[INVERSE_REASON_SIZE]) {
@@ -69,11 +77,7 @@ static void report_what_is_missing(const struct inversion *inversion,
     else if (inversion_grid(inversion)->groups > 0 && inversion_grid(inversion)->pairs == 0)
         report_groups(inversion, reason);
     else if (mf_inversion_find_stretch(inversion, &r))
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "g(r) agrees as a whole, but not from r = %.3g" STATUS_LENGTH
-                 " on: try more \"iterations\" or \"samples\", and see whether the errors of the "
-                 "target are right there",
-                 r);
+        report_stretch(r, reason);
     else if (isnan(ramp->drift))
         snprintf(
             reason, INVERSE_REASON_SIZE,

@@ -12,6 +12,20 @@ static void report_worst(const struct inversion *inversion, const struct inversi
              worst->noises);
 }
 
+size_t mf_inversion_states_widest(const struct inversion_state *state, size_t states) {
+    size_t widest = 0, most = 0;
+    for (size_t s = 0; s < states; s++) {
+        size_t seen = 0;
+        for (size_t a = 0; a < state[s].grid.known; a++)
+            seen += state[s].grid.seen[a];
+        if (seen > most) {
+            most = seen;
+            widest = s;
+        }
+    }
+    return widest;
+}
+
 void mf_inversion_states_end(struct inversion *inversion, struct inverse_step *step) {
     static const double progress = 0.95;
     static const uint32_t patience = 5;

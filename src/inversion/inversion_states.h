@@ -39,6 +39,10 @@ struct inversion_stagnation {
 /// carry the noise of C into the step. Says which target is farthest off.
 void mf_inversion_states_end(struct inversion *inversion, struct inverse_step *step);
 
+/// The state whose targets tell of most bins: start and reference of all are those of its targets,
+/// which in bins that it has not seen say nothing. Tested: test_inversion_states.
+size_t mf_inversion_states_widest(const struct inversion_state *state, size_t states);
+
 /// The mean of the states' steps of mf_inversion_low_rank_step, each bin weighted by 1/(k_B T
 /// σ_a/S_a)² of the states, 0 where a state has not seen it. U of a group is known but for a
 /// constant, which is another one in each state: what the states differ by over the bins that all

@@ -2,9 +2,9 @@
 #include "report/fit_output.h"
 
 #include "mesofit.h"
-#include "observe/kirkwood_buff.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
+#include "report/fit_integrals.h"
 #include "report/fit_report.h"
 #include "report/fit_verification.h"
 
@@ -305,45 +305,6 @@ static void write_normalisation(struct json_writer *writer, const struct fit_fil
                          divided ? 0 : found->error);
 }
 
-/// Those of the target "kirkwood_buff" and of the result.
-static void write_integrals(struct json_writer *writer, const struct fit_file *fit,
-                            const struct verification *v) {
-    const int kind = mf_kirkwood_buff_kind();
-    const struct composition *components = &target_files_kirkwood_buff(&fit->files)->components;
-    const struct target *target = &fit->problem.compared.target[kind];
-    for (size_t pair = 0; pair < target->count; pair++) {
-        mf_kirkwood_buff_write(writer, "target_kirkwood_buff", components, pair,
-                               target->value[pair], target->error[pair]);
-        mf_kirkwood_buff_write(writer, "kirkwood_buff", components, pair,
-                               v->observed.value[kind][pair], v->observed.error[kind][pair]);
-    }
-}
-
-/// S(0) of the target and of the result, in three dimensions and of beads that are alike.
-static void write_compressibility(struct json_writer *writer, const struct fit_file *fit,
-                                  const struct verification *v) {
-    const struct box *box = &fit->scene.setup.box;
-    const struct rdf_bins *bins = target_pairs_bins(target_files_rdf(&fit->files));
-    const size_t count = (size_t)fit->scene.setup.placement.count;
-    if (!fit->files.given[TARGET_RDF] || box->dimensions != 3 ||
-        composition_is_mixed(&fit->scene.setup.composition) ||
-        scene_has_molecules(&fit->scene.molecules))
-        return;
-    const struct kirkwood_buff target =
-        mf_kirkwood_buff_integrate(bins, target_files_rdf(&fit->files)->g,
-                                   target_files_rdf(&fit->files)->error, box, count, 0);
-    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
-        bins, v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF], box, count, 0);
-    write_quantity(writer, "target_kirkwood_buff", "lambda^d", target.integral);
-    write_quantity(writer, "target_kirkwood_buff_error", "lambda^d", target.integral_error);
-    write_quantity(writer, "kirkwood_buff", "lambda^d", found.integral);
-    write_quantity(writer, "kirkwood_buff_error", "lambda^d", known_error(found.integral_error));
-    write_known(writer, "target_compressibility", target.compressibility);
-    write_known(writer, "target_compressibility_error", target.compressibility_error);
-    write_known(writer, "compressibility", found.compressibility);
-    write_known(writer, "compressibility_error", known_error(found.compressibility_error));
-}
-
 /// "verification_time_step", and what there is to be said of it.
 static void write_step(struct json_writer *writer, const struct units *units,
                        const struct verification *v) {
@@ -362,9 +323,9 @@ static void write_verification(struct json_writer *writer, const struct fit_file
     write_distances(writer, fit, v);
     write_diffusion(writer, fit, v);
     if (targets_ask(&fit->problem.compared, mf_kirkwood_buff_kind()))
-        write_integrals(writer, fit, v);
+        mf_fit_integrals_write(writer, fit, v);
     else
-        write_compressibility(writer, fit, v);
+        mf_fit_integrals_write_compressibility(writer, fit, v);
     mf_json_put_measured(writer, "temperature", "T_0", t->temperature,
                          known_error(t->temperature_error));
     write_quantity(writer, "temperature_configurational", "T_0", t->temperature_configurational);

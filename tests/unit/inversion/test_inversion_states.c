@@ -145,10 +145,27 @@ static void test_what_a_state_has_not_seen_is_no_news_of_it(void **state) {
     clear(&made);
 }
 
+/// Start and reference are those of the state that has seen most, whichever is the first.
+static void test_widest_state_is_that_which_has_seen_most(void **state) {
+    static bool all[BINS], some[BINS];
+    (void)state;
+    for (size_t k = 0; k < BINS; k++) {
+        all[k] = true;
+        some[k] = k >= FIRST;
+    }
+    struct inversion_state two[STATES] = {{.grid = {.known = BINS, .seen = some}},
+                                          {.grid = {.known = BINS, .seen = all}}};
+    assert_int_equal(mf_inversion_states_widest(two, STATES), 1);
+    assert_int_equal(mf_inversion_states_widest(two, 1), 0);
+    two[1].grid.seen = some;
+    assert_int_equal(mf_inversion_states_widest(two, STATES), 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_constants_of_states_do_not_bend_the_mean),
         cmocka_unit_test(test_what_a_state_has_not_seen_is_no_news_of_it),
+        cmocka_unit_test(test_widest_state_is_that_which_has_seen_most),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
