@@ -335,7 +335,7 @@ double mf_inversion_band_birge(const struct inversion_assessment *assessment) {
 
 double mf_inversion_band_prior(const struct inversion *inversion) {
     return mf_inversion_band_birge(&inversion->assessment) /
-           pow(inversion->problem->scene.temperature, 2);
+           pow(inversion->equations.system.temperature, 2);
 }
 
 /// Σ = H⁻¹ (TᵀV T/birge + prior) H⁻¹.

@@ -2,6 +2,7 @@
 //
 // What of the potentials of an inversion is kept, and where it goes on from there.
 #include "inversion/inversion.h"
+#include "inversion/inversion_states.h"
 
 #include <math.h>
 #include <string.h>
@@ -212,5 +213,6 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
     progress->damping = 1;
     progress->from_disorder = progress->second_start = true;
     progress->drifts = (struct inversion_drifts){0};
-    return mf_inversion_start_again(inversion->state, inversion->course.phi);
+    const size_t widest = mf_inversion_states_widest(inversion->state, inversion->states);
+    return mf_inversion_start_again(&inversion->state[widest], inversion->course.phi);
 }

@@ -48,9 +48,9 @@ enum status mf_inversion_equations_init(struct inversion_equations *equations,
     equations->state = state;
     equations->states = states;
     equations->reduced = states > 1 || state->kirkwood_buff.pairs > 0;
-    equations->system = mf_inversion_equations_of(state);
-    equations->system.steepness = state[mf_inversion_states_widest(state, states)].target.steepness;
-    equations->of_response = equations->system;
+    // The prior is that of the state whose potential is the reference.
+    equations->system = equations->of_response =
+        mf_inversion_equations_of(&state[mf_inversion_states_widest(state, states)]);
     NEW_ARRAY(equations->scatter, state->grid.known * state->grid.known);
     NEW_ARRAY(equations->noise, state->grid.known * state->grid.known);
     if (groups) {
