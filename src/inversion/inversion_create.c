@@ -52,6 +52,24 @@ void mf_inversion_destroy(void *memory) {
     mf_memory_free(inversion->smoothness);
 }
 
+/// Potentials are those of all states: each must have all pair types.
+static enum status refuse_missing_pairs(const struct inversion_state *state,
+                                        const struct inversion_state *first) {
+    const struct potential_grid *own = &state->grid, *grid = &first->grid;
+    for (size_t pair = 0; pair < grid->pairs; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        if (own->known_of[pair] == grid->known_of[pair])
+            continue;
+        mf_composition_pair_name(&state->problem->scene.composition, (int)pair, name);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "scene.particles: one state has pairs of %s and another has none, as a "
+            "single bead has none: all states must have them, or none",
+            name);
+    }
+    return STATUS_OK;
+}
+
 /// Make the states. The one that fails has memory, too.
 static enum status make_states(struct inversion *inversion, const struct inverse_problem *problem,
                                const struct inversion_basis_size *coefficients) {
@@ -65,6 +83,8 @@ static enum status make_states(struct inversion *inversion, const struct inverse
         inversion->states++;
         status = mf_inversion_state_init(&inversion->state[s], own, &inversion->parameters,
                                          coefficients);
+        if (status == STATUS_OK)
+            status = refuse_missing_pairs(&inversion->state[s], inversion->state);
         CHECK(status == STATUS_OK || !several ? status
                                               : mf_status_prefix(status, "states.%s", own->name));
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Which of several states is the first does not matter: a cold one, which has not seen the core
-// that a hot one reaches, says nothing of the potential there.
+// that a hot one reaches, says nothing of the potential there. Each has the pairs of all.
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #define LAW "{\"law\": \"lennard-jones\", \"cutoff\": 1.122462048309373}"
 static const char scene[] =
@@ -71,8 +72,35 @@ static void test_states_find_the_law_in_either_order(void **state) {
         assert_true(read_deviation(out[k]) < 1.5);
 }
 
+#define MIXTURE(name, a, b, more)                                                                  \
+    "\"" name "\": {\"scene\": {\"particles\": {\"types\": {\"A\": " a ", \"B\": " b "}}},\n"      \
+    " \"target\": {\"rdf\": {\"A-A\": {\"file\": \"g.tsv\"}, \"A-B\": {\"file\": \"g.tsv\"}" more  \
+    "}}}"
+static const char mixtures[] =
+    "{\"scene\": {\"box\": [7, 7, 7], \"temperature\": 1},\n"
+    "\"states\": {" MIXTURE("mix", "100", "100", ", \"B-B\": {\"file\": \"g.tsv\"}") ",\n" MIXTURE(
+        "dilute", "200", "1", "") "}}\n";
+
+/// A single bead has no pair of its type.
+static void test_states_have_the_same_pairs(void **state) {
+    char table[4096] = "# r g g_error\n";
+    for (int k = 0; k < 60; k++) {
+        const double r = 0.05 * k + 0.025;
+        const size_t used = strlen(table);
+        snprintf(table + used, sizeof table - used, "%g %g 0.01\n", r, 1 - exp(-r * r));
+    }
+    small_inputs_write(*state, "g.tsv", table, NULL, NULL);
+    small_inputs_write(*state, "run.json", mixtures, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_non_null(
+        strstr(result.err, "states.dilute: scene.particles: one state has pairs of B-B"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_states_have_the_same_pairs,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_states_find_the_law_in_either_order,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
     };
