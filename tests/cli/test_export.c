@@ -349,6 +349,51 @@ static void test_votca_reads_the_potential(void **state) {
     assert_true(rows > 100);
 }
 
+/// Φ and force at r = 0, the last numbers of the first row of a table.
+static void first_row(const char *file, double *phi, double *force) {
+    char line[512];
+    FILE *stream = open_text(file);
+    do
+        assert_non_null(fgets(line, sizeof line, stream));
+    while (line[0] == '#');
+    fclose(stream);
+    char *last = strrchr(line, ' ');
+    assert_non_null(last);
+    *force = strtod(last, NULL);
+    *last = 0;
+    last = strrchr(line, ' ');
+    assert_non_null(last);
+    *phi = strtod(last, NULL);
+}
+
+/// Each pair type of the mixture has its own law, a r_c/2 and a at r = 0.
+static void assert_tables_of_pairs(const char *engine, const char *format) {
+    static const char *const type[][2] = {{"A", "A"}, {"A", "B"}, {"B", "B"}};
+    static const double expected[][2] = {{12.5, 25}, {13.5, 30}, {0, 0}};
+    for (int pair = 0; pair < 3; pair++) {
+        char name[64], file[128];
+        double phi, force;
+        snprintf(name, sizeof name, format, type[pair][0], type[pair][1]);
+        snprintf(file, sizeof file, "%s/%s", engine, name);
+        first_row(file, &phi, &force);
+        assert_true(fabs(phi - expected[pair][0]) < 1e-6);
+        assert_true(fabs(force - expected[pair][1]) < 1e-6);
+    }
+}
+
+/// The same of DL_POLY's sections, whose first value is at the first row.
+static void assert_sections_of_pairs(void) {
+    static const char *const head[] = {"A        A", "A        B", "B        B"};
+    static const double expected[] = {12.5, 13.5, 0};
+    char *table = temporary_folder_read("dl_poly/TABLE");
+    for (int pair = 0; pair < 3; pair++) {
+        const char *section = strstr(table, head[pair]);
+        assert_non_null(section);
+        assert_true(fabs(strtod(strchr(section, '\n'), NULL) - expected[pair]) < 0.05);
+    }
+    free(table);
+}
+
 static void test_mixture_has_a_table_for_each_pair_type(void **state) {
     static struct rows rows;
     static struct run_program_result result;
@@ -372,6 +417,11 @@ static void test_mixture_has_a_table_for_each_pair_type(void **state) {
     static const char *const engines[] = {"hoomd", "espresso", "openmm", "gromacs", "dl_poly"};
     for (size_t k = 0; k < sizeof engines / sizeof *engines; k++)
         run_export(engines[k], engines[k]);
+    assert_tables_of_pairs("hoomd", "%s-%s.txt");
+    assert_tables_of_pairs("espresso", "%s-%s.txt");
+    assert_tables_of_pairs("openmm", "%s-%s.txt");
+    assert_tables_of_pairs("gromacs", "table_%s_%s.xvg");
+    assert_sections_of_pairs();
 }
 
 /// `lmp -in lammps/in.mesofit` where the folder was written: a short run whose g(r) is ours within
