@@ -334,7 +334,7 @@ static void test_summary_has_what_other_programs_read(void **state) {
     results_assert_number("out/summary.json", "evaluations", 16);
     results_assert_number("out/summary.json", "seed", 3);
     results_assert_table("out/history.tsv", 18, 4);
-    results_assert_table("out/timing.tsv", 9, 4);
+    results_assert_table("out/timing.tsv", 10, 4);
     results_assert_table("out/rdf.tsv", 5, 20);
     results_assert_table("out/potential.tsv", 5, 21);
     results_assert_table("out/potential_history.tsv", 5, 21);

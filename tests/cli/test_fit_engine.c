@@ -157,7 +157,9 @@ static void test_an_engine_that_has_a_known_part_is_given_the_rest(void **state)
     assert_in_range(result.code, 0, 1);
     assert_non_null(strstr(result.err, "the engine has it itself, and its tables are of the rest"));
     assert_true(results_number("out/summary.json", "start.error") < 0.2);
-    assert_true(results_number("out/summary.json", "rdf_rmse") < 0.05);
+    // Of so few iterations and samples.
+    const double noise = results_number("out/summary.json", "rdf_noise");
+    assert_true(results_number("out/summary.json", "rdf_rmse") < 4 * noise);
     // By mesofit itself, which adds the known part.
     small_inputs_change(*state, "known.json", "\"replicas\": 2",
                         "\"by\": \"mesofit\", \"replicas\": 2");
