@@ -97,12 +97,16 @@ static double last_row(const struct rdf_bins *bins, size_t bin, size_t rows) {
     return mf_rdf_bins_centre(bins, bin) + 0.5 * bins->width * (1 - 1 / (double)rows);
 }
 
+/// Distances of the neighbours that a potential reaches at least, as those that Lennard-Jones beads
+/// are cut at, 2.5 σ: with less, Φ of a hot liquid bent to 0 too soon, by two of its errors.
+static const double min_reach = 2.3;
+
 /// Centre of the last row that is used: where g is seen to differ from 1, and all of the bin within
 /// half of a box that is given and not much too small.
 static double find_cutoff(const struct fit_choice *c, const char **why) {
     static const double min_of_box = 0.8;
     const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
-    double cutoff = fmin(whole, fmax(c->scales.seen, 2 * c->scales.neighbour));
+    double cutoff = fmin(whole, fmax(c->scales.seen, min_reach * c->scales.neighbour));
     *why = "beyond, g differs from 1 by less than 0.03 or its noise, as it may without forces "
            "there";
     if (c->leader) {

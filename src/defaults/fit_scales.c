@@ -33,13 +33,27 @@ static size_t highest_bin(const struct view *view) {
 }
 
 /// A maximum of g that is no more than noise says nothing.
+static const double min_peak = 0.05, peak_errors = 4;
+
+/// The first maximum that stands out from what follows, as that of chains does below 1.
+static double find_first_neighbour(const struct view *view, double spacing) {
+    size_t highest = 0;
+    for (size_t k = 0; k < view->bins->count; k++) {
+        const double noise = hypot(view->error[highest], view->error[k]);
+        if (view->g[k] > view->g[highest])
+            highest = k;
+        else if (view->g[highest] - view->g[k] > fmax(min_peak, peak_errors * noise))
+            return mf_rdf_bins_centre(view->bins, highest);
+    }
+    return spacing;
+}
+
 static double find_neighbour(const struct view *view, double spacing) {
-    static const double min_peak = 0.05, standard_errors = 4;
     const size_t k = highest_bin(view);
     const double peak = view->g[k] - view->tail;
-    return peak > fmax(min_peak, standard_errors * view->error[k])
+    return peak > fmax(min_peak, peak_errors * view->error[k])
                ? mf_rdf_bins_centre(view->bins, k)
-               : spacing;
+               : find_first_neighbour(view, spacing);
 }
 
 /// The first minimum after the neighbours; without one, half as far again as they are.

@@ -139,8 +139,6 @@ static enum status advance(struct inversion *inversion, struct inverse_step *ste
     TRY(mf_inversion_course_accept(inversion, kept));
     converged =
         mf_inversion_has_converged(inversion, *kept && !inversion->assessment.unequilibrated.found);
-    if (course->moved_since_met)
-        TRY(mf_inversion_band_find(inversion));
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
     describe(inversion, own, converged, step);

@@ -228,17 +228,6 @@ static void add_drift(struct inversion *inversion, const double *weight, double 
         add_square(inversion, pow(inversion->course.band.drifts.ramp.drift / variance, 2), scratch);
 }
 
-/// A fit that has met its targets more than once has walked along what they hardly determine: each
-/// potential on its way is possible, and the way is an error.
-static void add_walk(struct inversion *inversion, double *scratch) {
-    const struct potential_grid *grid = inversion_grid(inversion);
-    for (size_t a = 0; a < grid->known; a++) {
-        const size_t point = grid->known_point[a];
-        scratch[a] = inversion->course.best.phi[point] - inversion->course.first_met_phi[point];
-    }
-    add_square(inversion, 1, scratch);
-}
-
 /// A pressure, or a density, with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) +
 /// σ_P² k kᵀ with k = u/(p·u).
 static void add_bulk(struct inversion *inversion, double *scratch) {
@@ -399,10 +388,6 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     weigh_ramp(inversion, weight);
     CHECK(find_step(inversion, &system, birge, step));
     find_drifts(inversion, step, weight, scratch);
-    if (inversion->course.moved_since_met) {
-        add_walk(inversion, scratch);
-        CHECK(take_conventions_off(inversion, band->covariance));
-    }
     add_drift(inversion, weight, scratch);
     add_bulk(inversion, scratch);
     find_errors(inversion, weight, scratch);

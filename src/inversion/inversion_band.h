@@ -26,9 +26,6 @@
 /// C of groups is that of inversion_response. Off over stated, U of bonds and angles: 0.98(4) and
 /// 1.04(3) over 32 twins (lab/molecules.md).
 ///
-/// A fit that has met its targets more than once (mf_inversion_has_converged) has one more error,
-/// the distance w that it has walked since the first time: Σ + w wᵀ.
-///
 /// In V the samples' part is correlated as S is; the errors of a target are each bin's own, but for
 /// what the bins of a pair type have in common (inversion_noise.h).
 ///
@@ -48,8 +45,7 @@ struct inversion;
 struct inversion_assessment;
 
 /// The change of a number that the target hardly determines and still requires, and the standard
-/// error by g(r) alone: that of the present samples, without any drift, neither this one nor the
-/// way that the fit has walked.
+/// error by g(r) alone: that of the present samples, without this drift.
 struct inversion_band_drift {
     double drift, open;
 };

@@ -184,7 +184,6 @@ static void record_drifts(const struct inversion *inversion, struct inversion_dr
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     struct inversion_drifts *drifts = &inversion->course.progress.drifts;
-    inversion->course.moved_since_met = false;
     if (!kept) // it goes back to the one before
         return false;
     const bool meets = inversion->course.progress.best.precise && meets_targets(inversion);
@@ -197,11 +196,6 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     drifts->met++;
     const struct potential_grid *grid = inversion_grid(inversion);
     const uint32_t min = grid->groups > 0 ? MIN_MET_WITH_GROUPS : 1;
-    if (drifts->met == 1 && grid->points > 0)
-        memcpy(inversion->course.first_met_phi, inversion->course.phi,
-               grid->points * sizeof(double));
     const bool settled = drifts->met >= min && has_settled(inversion, min);
-    const bool ends = !must_settle(inversion) || settled || drifts->met >= INVERSION_MAX_DRIFTS;
-    inversion->course.moved_since_met = ends && drifts->met > 1;
-    return ends;
+    return !must_settle(inversion) || settled;
 }

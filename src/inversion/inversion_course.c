@@ -20,7 +20,6 @@ enum status mf_inversion_course_init(struct inversion_course *course, size_t kno
     NEW_ARRAY(course->best.step, points);
     NEW_ARRAY(course->best.other_step, points);
     NEW_ARRAY(course->best.counts, bins);
-    NEW_ARRAY(course->first_met_phi, points);
     CHECK(mf_inversion_band_init(&course->band, known, points));
     course->progress = (struct inversion_progress){.from_disorder = true,
                                                    .stretch = 1,
@@ -35,7 +34,7 @@ done:
 void mf_inversion_course_clear(struct inversion_course *course) {
     double *arrays[] = {course->phi,         course->step,      course->other_step,
                         course->best.phi,    course->best.step, course->best.other_step,
-                        course->best.counts, course->reference, course->first_met_phi};
+                        course->best.counts, course->reference};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
     mf_inversion_band_clear(&course->band);
@@ -43,9 +42,8 @@ void mf_inversion_course_clear(struct inversion_course *course) {
 
 size_t mf_inversion_course_spans(struct inversion_course *course, size_t points, size_t bins,
                                  struct memory_span *span) {
-    double *curves[] = {course->phi,       course->best.phi,
-                        course->best.step, course->best.other_step,
-                        course->reference, course->first_met_phi};
+    double *curves[] = {course->phi, course->best.phi, course->best.step, course->best.other_step,
+                        course->reference};
     size_t n = 0;
     span[n++] = (struct memory_span){&course->progress, sizeof course->progress};
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++)

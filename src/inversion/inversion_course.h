@@ -59,8 +59,6 @@ struct inversion_course {
         double *phi, *step, *other_step;
         double *counts; ///< ⟨S⟩ of one state after the other, shape [bins of all]
     } best;
-    double *first_met_phi;      ///< of the first iteration since then that met the targets
-    bool moved_since_met;       ///< the fit ends elsewhere: the way from there is an error
     struct inversion_band band; ///< of the best
     struct inversion_progress progress;
 };
@@ -131,12 +129,9 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 /// step goes a part of its way, from one side, and an iteration that finds it over by chance would
 /// end there and take the same chance into the last step: the pressures of 16 twins were 0.6 errors
 /// too low. They need not follow on each other: by the noise of C chi^2 of hexane swings about its
-/// bound. One that meets its targets eight times and goes on ends, too: hexane's g(r) of two types
-/// of beads was met for 17 iterations, in which the pressure fell by 900 bar. Each potential that
-/// met the targets is possible: the way since the first of them counts as an error
-/// (`moved_since_met`). Of two Lennard-Jones liquids whose table has no errors fits ended at 4400,
-/// 6000 and 12,000 bar, with stated errors of 400 to 700, and the truth is 104. Iterations that are
-/// not kept, or whose samples have not settled, do not count. Tested: test_inversion_converged.
+/// bound. The way has an end, as the prior is that of Φ (inversion_band.h), and a fit whose
+/// iterations do not reach it has not converged. Iterations that are not kept, or whose samples
+/// have not settled, do not count. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Find a stretch of a g(r) that is off by more than noise, though all of it may agree: few bins

@@ -23,8 +23,8 @@ enum { MAX_DOUBLINGS = 9 };
 enum { DISORDER_EQUILIBRATION = 2 };
 
 /// Sweeps of one potential, over those of its first samples, after which it is given up if it has
-/// not settled.
-enum { MAX_TIMES = 600 };
+/// not settled: in any case, and beside one to go back to, if all before it took no more.
+enum { MAX_TIMES = 600, MIN_TIMES = 16 };
 
 /// Independent samples after which replicas that go on with another potential have forgotten the
 /// one before: its effect falls as exp(−2 t/memory), to 3e-4.
@@ -124,6 +124,23 @@ bool mf_inversion_is_far_beyond_drift(const struct inversion_state *state) {
            mf_inversion_bulk_shift(state) < noise_share * fabs(mf_inversion_bulk_missing(state));
 }
 
+/// Whether there is a potential to go back to.
+static bool has_kept(const struct inversion *inversion) {
+    return isfinite(inversion->course.progress.best.distance[TARGET_RDF].rms);
+}
+
+/// The sweeps of a replica after which samples that have not settled are given up. A step may lead
+/// to where nothing settles, as into two phases: half of it is tried when it has cost as much as
+/// all before it, so that where each potential is slow, the next one may cost twice that.
+static uint64_t find_most_sweeps(const struct sampling *sampling, uint64_t first) {
+    const struct inversion_state *state = sampling->state;
+    const uint64_t before = state->work.sweeps / (uint64_t)state->parameters->replicas;
+    const uint64_t most = MAX_TIMES * first, least = MIN_TIMES * first;
+    if (!has_kept(sampling->inversion))
+        return most;
+    return before < least ? least : before > most ? most : before;
+}
+
 /// Whether samples that have not settled are given up: they have cost enough; they are those of a
 /// first start under tension, with another start to be tried; or each more takes them farther from
 /// the targets, and they could not be kept, or there is another start. Of several states only all
@@ -143,7 +160,7 @@ static bool is_hopeless(struct sampling *sampling) {
     const bool worse = sampling->state->basis.count == 0 && farther && lost;
     const bool poor = other && inversion->course.progress.iteration == 0 &&
                       mf_inversion_start_is_under_tension(sampling->state, assessment);
-    assessment->unequilibrated.for_long = sampling->sweeps > MAX_TIMES * first;
+    assessment->unequilibrated.for_long = sampling->sweeps > find_most_sweeps(sampling, first);
     memcpy(sampling->before, assessment->distance, sizeof sampling->before);
     return assessment->unequilibrated.for_long || worse || poor;
 }
@@ -209,8 +226,7 @@ static enum status sample_all(struct sampling *sampling) {
 
 /// Whether another engine could not sample the potential, while there is one to go back to.
 static bool is_unstable(const struct inversion *inversion, enum status status) {
-    return status == STATUS_UNSTABLE &&
-           isfinite(inversion->course.progress.best.distance[TARGET_RDF].rms);
+    return status == STATUS_UNSTABLE && has_kept(inversion);
 }
 
 enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,

@@ -51,8 +51,8 @@ static void test_fit_defaults_choose_all_that_target_density_and_temperature_lea
     assert_in_range(setup->placement.count, 1000, 1e5);
     assert_close((double)setup->placement.count / mf_box_volume(&setup->box), 0.3, 1e-9);
     assert_true(mf_box_shortest(&setup->box) >= 2 * range);
-    // g is 1 within its noise from 1.5 on, where 10 exp(−(r/0.5)²) is 0.001; 3 are two spacings.
-    assert_true(range > 1.3 && range < 3.1);
+    // g is 1 within its noise from 1.5 on, where 10 exp(−(r/0.5)²) is 0.001; 3.4 are 2.3 spacings.
+    assert_true(range > 1.3 && range < 3.5);
     // The largest of −(ln g)'' is 40 (1 − r²/…) at most: 2 · 10/0.25 · 2 e^{−3/2} = 35.7.
     assert_true(setup->time_step <= sqrt(0.04 / (2 * 30)) && setup->time_step > 0.01);
     assert_true(fit.scene.omega.curves == 1 && mf_integrator_list[0] != NULL);
@@ -293,8 +293,8 @@ static void test_fit_defaults_join_fine_rows_and_end_g_with_its_structure(void *
         } else {
             // Cubics through bins of 0.1 are off by 3/128 · 0.1⁴ times 1200 at most, 0.003.
             assert_true(bins->width > 0.04 && bins->width < 0.15);
-            // 10 exp(−4 r²) = 0.03 at r = 1.2; two spacings are 3.
-            assert_close(mf_rdf_bins_range(bins), 2 * pow(0.3, -1.0 / 3), 0.15);
+            // 10 exp(−4 r²) = 0.03 at r = 1.2; 2.3 spacings are 3.4.
+            assert_close(mf_rdf_bins_range(bins), 2.3 * pow(0.3, -1.0 / 3), 0.15);
         }
         mf_fit_file_clear(&fit);
     }

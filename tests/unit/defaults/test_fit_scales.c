@@ -70,6 +70,20 @@ static void test_fit_scales_of_a_gas_without_structure_are_those_of_its_density(
     assert_close(scales.seen, 0, 0);
 }
 
+/// Beads of chains: the others of their neighbours keep it below 1 up to the end of a molecule.
+static double chains(double r) {
+    return r < 1 ? 0 : r < 2.5 ? 0.8 + 0.2 * (r - 1) / 1.5 + 0.15 * exp(-50 * pow(r - 1.2, 2)) : 1;
+}
+
+static void test_fit_scales_finds_neighbours_where_g_has_no_peak_above_its_tail(void **state) {
+    struct known known;
+    (void)state;
+    fill(&known, chains, 0.004);
+    assert_close(mf_fit_scales_find(&known.rdf, 1, 0.002).neighbour, 1.2, width);
+    fill(&known, chains, 0.1);
+    assert_close(mf_fit_scales_find(&known.rdf, 1, 0.002).neighbour, pow(0.8, -1.0 / 3), 1e-9);
+}
+
 /// Noise of bins beside one another is no curvature: at five points its standard error is as large
 /// as what is to be found, and wider parabolas are taken.
 static void test_fit_scales_takes_wider_parabolas_where_g_is_noisy(void **state) {
@@ -192,6 +206,7 @@ int main(void) {
         cmocka_unit_test(test_fit_scales_finds_curvature_neighbours_shell_and_how_far_g_is_seen),
         cmocka_unit_test(test_fit_scales_of_a_gas_without_structure_are_those_of_its_density),
         cmocka_unit_test(test_fit_scales_takes_wider_parabolas_where_g_is_noisy),
+        cmocka_unit_test(test_fit_scales_finds_neighbours_where_g_has_no_peak_above_its_tail),
         cmocka_unit_test(test_fit_scales_friction_is_that_of_neighbours_without_order),
         cmocka_unit_test(test_fit_scales_joined_bins_are_as_wide_as_a_peak_can_bear),
         cmocka_unit_test(test_fit_scales_joined_minds_the_flank_where_pairs_are_rare),

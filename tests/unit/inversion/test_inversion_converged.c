@@ -49,10 +49,8 @@ static void test_fit_of_pairs_ends_when_it_agrees_once(void **state) {
     assert_false(mf_inversion_has_converged(inversion, true));
     inversion->course.band.drifts.bulk[0].drift = 0.4;
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_true(inversion->course.moved_since_met); // since it agreed for the first time
     inversion = make_end(&end, 0);
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_false(inversion->course.moved_since_met);
 }
 
 /// A way that is over once may be so by chance; what goes on goes on in one direction.
@@ -128,26 +126,16 @@ static void test_pressure_of_each_state_must_settle(void **state) {
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
-/// Eight iterations that meet the targets are enough, and the way since then is an error.
-static void test_fit_with_groups_ends_though_it_walks_on(void **state) {
+/// Iterations that meet the targets and walk on are no end, however many they are.
+static void test_fit_with_groups_goes_on_while_it_walks_on(void **state) {
     (void)state;
     struct end end;
     struct inversion *inversion = make_end(&end, 1);
-    double phi[2] = {0, 0}, met[2] = {0, 0};
-    inversion->state->grid.points = 2;
-    inversion->course.phi = phi;
-    inversion->course.first_met_phi = met;
     inversion->course.band.drifts.ramp.drift = -0.06;
-    for (int n = 0; n < 5; n++, phi[0] += 1)
+    for (int n = 0; n < 3 * INVERSION_MAX_DRIFTS; n++)
         assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->assessment.section[0].misfit = far;
-    assert_false(mf_inversion_has_converged(inversion, true));
-    inversion->assessment.section[0].misfit = 1.5;
-    for (int n = 0; n < INVERSION_MAX_DRIFTS - 1; n++, phi[0] += 1)
-        assert_false(mf_inversion_has_converged(inversion, true));
+    inversion->course.band.drifts.ramp.drift = -0.02; // with the two before, a mean below 0.05
     assert_true(mf_inversion_has_converged(inversion, true));
-    assert_true(inversion->course.moved_since_met);
-    assert_true(met[0] == 5);
 }
 
 /// A pressure among the targets holds what g hardly sees, and groups alone have no ramp.
@@ -303,7 +291,7 @@ int main(void) {
         cmocka_unit_test(test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel),
         cmocka_unit_test(test_fit_with_groups_ends_though_its_misfit_swings),
         cmocka_unit_test(test_pressure_of_each_state_must_settle),
-        cmocka_unit_test(test_fit_with_groups_ends_though_it_walks_on),
+        cmocka_unit_test(test_fit_with_groups_goes_on_while_it_walks_on),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
         cmocka_unit_test(test_fit_ends_when_all_sections_agree),
         cmocka_unit_test(test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees),
