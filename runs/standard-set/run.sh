@@ -67,7 +67,7 @@ digest() {
 # $1 run file, $2 folder: the run file that is fitted, a copy with the start if one is asked for.
 begin_with() {
     [ -n "$start" ] || { echo "$1" && return; }
-    sed "0,/{/ s|{|{\"method\": {\"name\": \"auto\", \"start\": \"$start\"},|; s|\(\"file\":[[:space:]]*\"\)|\1$(dirname "$1")/|g" "$1" >"$2/run.json"
+    sed "0,/{/ s|{|{\"method\": {\"start\": \"$start\"},|; s|\(\"file\":[[:space:]]*\"\)|\1$(dirname "$1")/|g" "$1" >"$2/run.json"
     echo "$2/run.json"
 }
 

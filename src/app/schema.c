@@ -297,12 +297,12 @@ static void write_topic(struct json_writer *writer, const struct topic *topic) {
 
 // Groups ------------------------------------------------------------------------------------------
 
-/// If the key `chief` says that it is this one of a group, then it has the keys of this one: an
-/// editor offers no others.
+/// If the key `chief` says that it is this one of a group, it has no other keys than this one.
 static void write_member(struct json_writer *writer, const char *chief, const struct topic *topic) {
     mf_json_begin(writer, NULL);
     mf_json_begin(writer, "if");
-    mf_json_write_texts(writer, "required", &chief, 1);
+    if (strcmp(topic->name, "auto") != 0) // a method without a name may have the keys of this one
+        mf_json_write_texts(writer, "required", &chief, 1);
     mf_json_begin(writer, "properties");
     mf_json_begin(writer, chief);
     mf_json_write_text(writer, "const", topic->name);
@@ -329,11 +329,11 @@ static bool is_of(const struct topic *topic, const char *group) {
 static void write_chief(struct json_writer *writer, const char *chief,
                         const struct topic *const *members, size_t count) {
     const char *names[DESCRIBE_MAX_TOPICS];
+    mf_json_write_text(writer, "type", "object");
     for (size_t k = 0; k < count; k++)
         names[k] = members[k]->name;
-    mf_json_write_text(writer, "type", "object");
-    // The integrator is chosen by what the scene has if it says none.
-    if (strcmp(chief, "integrator") != 0)
+    // An integrator or a method is chosen by what the file has if it says none.
+    if (strcmp(chief, "integrator") != 0 && strcmp(chief, "name") != 0)
         mf_json_write_texts(writer, "required", &chief, 1);
     mf_json_begin(writer, "properties");
     mf_json_begin(writer, chief);

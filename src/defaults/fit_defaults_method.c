@@ -84,7 +84,14 @@ static double find_noise_ratio(const struct composition *composition) {
     return pairs > 0 ? sqrt(sum / pairs) : 1;
 }
 
+/// Parameters of an inversion of which the file says this one; or NULL.
+static const struct inversion_parameters *said(const struct fit_choice *c, const char *key) {
+    const uint64_t bit = mf_fields_bit(mf_automatic.tables->fields, key);
+    return c->fit->parameters_given & bit ? c->fit->method_parameters : NULL;
+}
+
 double mf_fit_defaults_precision(const struct fit_choice *c) {
+    const struct inversion_parameters *given = said(c, "precision");
     // Molecules move slowly: a third of the noise would take ten times as long.
     const bool slow = scene_has_molecules(&c->fit->scene.molecules);
     const double min = (slow ? 0.003 : 0.001) * find_noise_ratio(c->rdf->composition);
@@ -92,12 +99,16 @@ double mf_fit_defaults_precision(const struct fit_choice *c) {
     // Of single beads more samples than that would make the error of the result smaller by an
     // eighth at most.
     const double part_of_target = slow ? 1 : 0.5;
-    return fmax(part_of_target * c->scales.noise, fmin(max, fmax(min, c->scales.noise)));
+    return given ? given->precision
+                 : fmax(part_of_target * c->scales.noise, fmin(max, fmax(min, c->scales.noise)));
 }
 
 /// A system that is large enough for the range.
 static double choose_particles(const struct fit_choice *c) {
     static const double min = 700, margin = 2.15, distortion = 0.05;
+    const struct inversion_parameters *given = said(c, "particles");
+    if (given)
+        return (double)given->particles;
     const double wanted =
         ceil(fmax(min, c->density * pow(margin * fit_choice_reach(c), c->dimensions)));
     return (double)mf_composition_min_particles(c->rdf->composition, (int64_t)wanted, distortion);
@@ -175,6 +186,9 @@ double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
 
 enum status mf_fit_defaults_take_method(struct fit_choice *c, const struct inverse_method *method) {
     c->fit->method = method;
+    if (c->fit->method_parameters && method->tables->fields == mf_automatic.tables->fields)
+        return STATUS_OK; // as far as the file says them
+    mf_memory_free(c->fit->method_parameters);
     TRY((c->fit->method_parameters = mf_memory_zeroed(1, method->parameters_size))
             ? STATUS_OK
             : STATUS_NO_MEMORY);
@@ -191,7 +205,7 @@ static bool has_field(const struct field *fields, const char *name) {
 
 /// Choose a parameter of the method that was taken.
 static void give_to_method(struct fit_choice *c, const char *key, double value) {
-    uint64_t given = 0;
+    uint64_t given = c->fit->parameters_given;
     const struct inverse_table *table = c->fit->method->tables;
     while (!has_field(table->fields, key))
         table++;

@@ -3,13 +3,12 @@
 
 #include "base/digest.h"
 #include "base/memory.h"
-#include "base/names.h"
 #include "defaults/fit_defaults.h"
 #include "defaults/fit_densities.h"
 #include "defaults/fit_engine.h"
+#include "defaults/fit_method.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"
-#include "defaults/methods.h"
 #include "io/text_file.h"
 
 #include <math.h>
@@ -25,81 +24,6 @@ const struct field mf_fit_core_fields[] = {
      .help = "curvature of the potential in the core"},
     FIELD_END,
 };
-
-NAMED_RECORD(struct inverse_method);
-
-/// Where forces from outside act, g(r) does not follow from those of pairs; partial g(r) do not
-/// follow from the force on a bead of either type.
-static void check_estimator(const struct fit_file *fit, struct json_object *method) {
-    if (fit->method->sampling == NULL || !fit->method->sampling(fit->method_parameters).rdf_force)
-        return;
-    if (composition_is_mixed(&fit->scene.setup.composition))
-        mf_json_fault(method, "estimator",
-                      "\"force\" is not for mixtures; \"histogram\" counts their partial g(r)");
-    if (fit->scene.setup.interactions > 0)
-        mf_json_fault(method, "estimator",
-                      "\"force\" supports only pair forces, not \"interactions\"");
-}
-
-static bool knows(const struct inverse_method *method, const char *key) {
-    for (const struct inverse_table *table = method->tables; table->fields; table++)
-        for (const struct field *field = table->fields; field->name; field++)
-            if (strcmp(field->name, key) == 0)
-                return true;
-    return false;
-}
-
-/// What files of earlier versions may say.
-static void refuse_removed(const struct inverse_method *method, struct json_object *object) {
-    static const char usual[] = "its default is always used; leave it out";
-    static const struct {
-        const char *key, *now, *reason; ///< what is always so now
-    } removed[] = {
-        {"asynchronous", "no", "candidates are always measured in rounds; leave it out"},
-        {"regularisation", "noise",
-         "the smoothness of the step follows from the noise; leave it out"},
-        {"strength", "0", "it is chosen from the noise; leave it out"},
-        {"islands", "1", "the population is not divided any more; leave it out"},
-        {"migration", "5", "the population is not divided any more; leave it out"},
-        {"common_noise", "no", "each candidate gets its own random numbers; leave it out"},
-        {"restarts", "0", "leave it out, and begin again with another \"seed\""},
-        {"remeasurements", "2", usual},
-        {"mutated_genes", "0.1", usual},
-        {"additive", "0.1", usual},
-        {"crossover", "0.9", usual},
-        {"crossover_exponent", "15", usual},
-        {"mutation", "1", usual},
-        {"remeasured", "0.25", usual},
-        {"depth", "7", usual},
-        {"damping", "1", usual},
-        {"ridge", "0.35", usual},
-    };
-    for (size_t k = 0; k < sizeof removed / sizeof *removed; k++)
-        if (!knows(method, removed[k].key))
-            mf_json_retired(object, removed[k].key, removed[k].now, removed[k].reason);
-}
-
-static enum status read_method(struct fit_file *fit, struct json_object *root) {
-    const char **names;
-    struct json_object object = mf_json_child_of(root, "method", false, "name");
-    if (object.item == NULL)
-        return STATUS_OK;
-    TRY(mf_names_collect(mf_methods, NULL, &names));
-    const char *name = mf_json_choice(&object, "name", names, NULL);
-    mf_memory_free(names);
-    if (name == NULL)
-        return STATUS_OK;
-    fit->method = mf_names_find(mf_methods, name);
-    fit->method_parameters = mf_memory_zeroed(1, fit->method->parameters_size);
-    if (fit->method_parameters == NULL)
-        return STATUS_NO_MEMORY;
-    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
-        mf_json_fields(&object, table->fields, (char *)fit->method_parameters + table->offset);
-    check_estimator(fit, &object);
-    refuse_removed(fit->method, &object);
-    mf_json_finish(&object);
-    return STATUS_OK;
-}
 
 /// What stands in scene files, but not in the scene of a fit.
 static void refuse_foreign(struct json_object *scene, int unknown) {
@@ -158,7 +82,7 @@ static enum status read_root(struct fit_file *fit, struct json_object *root,
     TRY(mf_target_files_read(&fit->files, root, &about));
     TRY(mf_fit_unknowns_read(fit, root));
     TRY(mf_fit_densities_read(fit, root));
-    TRY(read_method(fit, root));
+    TRY(mf_fit_method_read(fit, root));
     mf_fit_engine_read(fit, root);
     struct json_object core = mf_json_child(root, "core", false);
     fit->core_given = mf_json_fields(&core, mf_fit_core_fields, &fit->core);
@@ -285,6 +209,7 @@ static enum status read_state(struct fit_file *fit, struct reading *reading) {
     TRY(take_constraints(fit, reading, &root));
     fit->choices.thermostat = fit->friction == FIT_FRICTION_CHOSEN && fit->scene.given.dissipative;
     TRY(mf_fit_defaults_choose(fit, reading->leader));
+    mf_fit_method_check(fit, &root);
     TRY(complete(fit, &root));
     state_problem(fit, reading->options);
     return STATUS_OK;

@@ -85,7 +85,8 @@ struct fit_file {
     uint64_t core_given;           ///< which fields the file says
     struct engine_settings engine; ///< who samples
     const struct inverse_method *method;
-    void *method_parameters;
+    void *method_parameters;   ///< of the method, or of mf_automatic, if the file says some alone
+    uint64_t parameters_given; ///< which ones, then: the method is chosen beside them
     struct verify_parameters verification;
     uint64_t verification_given;
     struct inverse_problem problem;

@@ -210,8 +210,8 @@ static const struct fault run_faults[] = {
           "{\"name\": \"imc\", \"replicas\": 2, \"equilibration\": 1, \"samples\": 8,\n"
           "             \"every\": 1, \"iterations\": 1}",
           "\"imc\"", "write {\"name\": \"imc\"}"),
-    FAULT("no method", "\"name\": \"imc\", ", "",
-          "method.name: missing: expected a text; known: auto, imc"),
+    FAULT("a method without a name", "\"name\": \"imc\", ", "\"generations\": 3, ",
+          "method.generations: unknown key"),
     FAULT("the potential that is to be found", STEP, STEP ", \"conservative\": {\"law\": \"none\"}",
           "scene.conservative: unknown key: it is to be found; give an initial law as \"start\""),
     FAULT("hard particles in a fit", STEP,

@@ -267,6 +267,35 @@ static void test_fit_defaults_cut_g_at_half_of_a_box_that_is_given(void **state)
 }
 
 /// Rows that are ten times finer than the gas asks for are joined, and its g ends where it is 1.
+/// A method without a name is chosen, and what the file says of it stays.
+static void test_fit_defaults_choose_a_method_beside_its_parameters(void **state) {
+    struct fit_file fit, plain;
+    write_target(state, 0.002);
+    assert_ok(read_run(state, &plain, "plain.json",
+                       TARGET "\"scene\": {\"density\": 0.3, \"temperature\": 1}}"));
+    assert_ok(read_run(state, &fit, "run.json",
+                       TARGET "\"scene\": {\"density\": 0.3, \"temperature\": 1}, \"method\": "
+                              "{\"start\": \"mean-force\", \"precision\": 0.05}}"));
+    const struct inversion_parameters *settings = fit.method_parameters;
+    assert_ptr_equal(fit.method, plain.method);
+    assert_int_equal(settings->start, INVERSION_FROM_MEAN_FORCE);
+    assert_close(settings->precision, 0.05, 0);
+    assert_int_equal(settings->particles,
+                     ((const struct inversion_parameters *)plain.method_parameters)->particles);
+    assert_close(mf_rdf_bins_range(&fit.problem.targets.bins),
+                 mf_rdf_bins_range(&plain.problem.targets.bins), 0);
+    mf_fit_file_clear(&plain);
+    mf_fit_file_clear(&fit);
+    // To find omega an inversion is not the method.
+    assert_int_equal(
+        read_run(state, &fit, "both.json",
+                 "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}, \"diffusion\": {\"value\": 0.1, "
+                 "\"error\": 0.01}}, \"scene\": {\"density\": 0.3, \"temperature\": 1}, "
+                 "\"method\": {\"start\": \"mean-force\"}}"),
+        STATUS_BAD_INPUT);
+    assert_non_null(strstr(mf_status_message(), "give the \"name\" of the method"));
+}
+
 static void test_fit_defaults_join_fine_rows_and_end_g_with_its_structure(void **state) {
     enum { ROWS = 1200, SIZE = 40 * ROWS };
     static const char none[] = "\"method\": {\"name\": \"ibi\"}, ";
@@ -409,6 +438,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
+        IN_FOLDER(test_fit_defaults_choose_a_method_beside_its_parameters),
         IN_FOLDER(test_fit_defaults_join_fine_rows_and_end_g_with_its_structure),
         IN_FOLDER(test_fit_defaults_end_g_of_water_behind_its_third_layer),
         IN_FOLDER(test_fit_defaults_find_omega_where_targets_move),
