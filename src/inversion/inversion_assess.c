@@ -303,7 +303,7 @@ static void move_pool(struct inversion_state *state) {
     }
 }
 
-void mf_inversion_pool(struct inversion_state *state) {
+void mf_inversion_pool(struct inversion_state *state, bool alone) {
     const struct potential_grid *grid = &state->grid;
     double *pool = &state->pool.samples;
     const double now = state->replicas.counts.count;
@@ -311,7 +311,7 @@ void mf_inversion_pool(struct inversion_state *state) {
         *pool = 0;
         return;
     }
-    const double share = fmax(min_share, now / (*pool + now));
+    const double share = alone ? 1 : fmax(min_share, now / (*pool + now));
     for (size_t a = 0; a < grid->known; a++) {
         const double target = mf_inversion_target_variance(state, a);
         double *excess = &state->pool.excess[a], *sampled = &state->pool.variance[a];

@@ -10,6 +10,9 @@
 /// settled.
 static const double settled_drift = 0.5;
 
+/// A drift in the direction of the one before is that of a way if it is this part of the error.
+static const double least_drift = 0.1;
+
 /// Iterations since the fit came near its targets that must meet them where C is that of few
 /// samples, so that a step goes a part of its way.
 enum { MIN_MET_WITH_GROUPS = 3 };
@@ -173,6 +176,25 @@ static bool has_settled(const struct inversion *inversion, uint32_t min) {
     return false;
 }
 
+/// Whether two drifts keep one direction, as a way does, and of noise every second pair.
+static bool keeps_direction(double last, double before, double open) {
+    return last * before > 0 && fabs(last) > least_drift * open;
+}
+
+bool mf_inversion_is_on_its_way(const struct inversion *inversion) {
+    const struct inversion_band_drifts *last = &inversion->course.band.drifts;
+    const struct inversion_drifts *drifts = &inversion->course.progress.drifts;
+    if (drifts->near < 2 || !must_settle(inversion))
+        return false;
+    const uint32_t now = (drifts->near - 1) % INVERSION_MAX_DRIFTS,
+                   before = (drifts->near - 2) % INVERSION_MAX_DRIFTS;
+    bool keeps = keeps_direction(drifts->ramp[now], drifts->ramp[before], last->ramp.open);
+    for (size_t s = 0; s < inversion->states; s++)
+        keeps = keeps ||
+                keeps_direction(drifts->bulk[now][s], drifts->bulk[before][s], last->bulk[s].open);
+    return keeps;
+}
+
 static void record_drifts(const struct inversion *inversion, struct inversion_drifts *drifts) {
     const struct inversion_band_drifts *last = &inversion->course.band.drifts;
     const uint32_t place = drifts->near % INVERSION_MAX_DRIFTS;
@@ -197,5 +219,5 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     const struct potential_grid *grid = inversion_grid(inversion);
     const uint32_t min = grid->groups > 0 ? MIN_MET_WITH_GROUPS : 1;
     const bool settled = drifts->met >= min && has_settled(inversion, min);
-    return !must_settle(inversion) || settled;
+    return !must_settle(inversion) || (settled && !mf_inversion_is_on_its_way(inversion));
 }

@@ -125,14 +125,20 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 /// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact
 /// as was asked for, agree with all targets, and leave no way that g hardly sees. The way has the
 /// noise of the samples: the mean of those of the last iterations near the targets may be half
-/// of its error. In fits with groups three of these or more must have met the targets, since each
-/// step goes a part of its way, from one side, and an iteration that finds it over by chance would
-/// end there and take the same chance into the last step: the pressures of 16 twins were 0.6 errors
-/// too low. They need not follow on each other: by the noise of C chi^2 of hexane swings about its
-/// bound. The way has an end, as the prior is that of Φ (inversion_band.h), and a fit whose
-/// iterations do not reach it has not converged. Iterations that are not kept, or whose samples
-/// have not settled, do not count. Tested: test_inversion_converged.
+/// of its error, and the last does not keep the direction of the one before. In fits with groups
+/// three of these or more must have met the targets, since each step goes a part of its way, from
+/// one side, and an iteration that finds it over by chance would end there and take the same chance
+/// into the last step: the pressures of 16 twins were 0.6 errors too low. They need not follow on
+/// each other: by the noise of C chi^2 of hexane swings about its bound. The way has an end, as the
+/// prior is that of Φ (inversion_band.h), and a fit whose iterations do not reach it has not
+/// converged. Iterations that are not kept, or whose samples have not settled, do not count.
+/// Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
+
+/// Whether the last two drifts near the targets, of the ramp or of what it moves, keep one
+/// direction: the fit is on its way, and what earlier iterations ask for, moved by a response that
+/// changes on it, holds it back. Tested: test_inversion_converged.
+bool mf_inversion_is_on_its_way(const struct inversion *inversion);
 
 /// Find a stretch of a g(r) that is off by more than noise, though all of it may agree: few bins
 /// drown among the others, as those that few pairs reach among those of all shells. Of the excess

@@ -358,7 +358,7 @@ static void test_inversion_pool_is_moved_by_the_newest_response(void **state) {
         one.covariance = response[n];
         one.excess = -4 * (one.phi - 2);
         one.variance = 1;
-        mf_inversion_pool(&one.state);
+        mf_inversion_pool(&one.state, false);
     }
     assert_close(one.excess, 2, 1e-12);
     assert_close(one.variance, 1.0 / 3, 1e-12);
@@ -382,7 +382,7 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     for (int n = 0; n < STEPS; n++) {
         one.excess = -response * one.phi + gsl_ran_gaussian(rng, 1);
         one.variance = 1;
-        mf_inversion_pool(made);
+        mf_inversion_pool(made, false);
         if (n >= FIRST)
             sum += pow(response * one.phi, 2) / (STEPS - FIRST);
         one.phi += one.excess / response;
@@ -395,7 +395,7 @@ static void test_inversion_pool_steps_with_a_fifth_of_the_noise(void **state) {
     assert_close(worth, 5, 1e-6);
     // What is far off starts again.
     made->assessment.section[0].misfit = 9.1;
-    mf_inversion_pool(made);
+    mf_inversion_pool(made, false);
     assert_true(made->pool.samples == 0);
     gsl_rng_free(rng);
 }
@@ -406,16 +406,16 @@ static void test_inversion_pool_of_coefficients_goes_by_their_gradient(void **st
     struct one_bin one;
     make_one_bin(&one, 4);
     one.state.assessment.section[0].misfit = 900;
-    mf_inversion_pool(&one.state);
+    mf_inversion_pool(&one.state, false);
     assert_true(one.state.pool.samples == 0);
     one.state.basis.count = 1;
     for (int n = 1; n <= 2; n++) {
         one.state.gradient = 2.9;
-        mf_inversion_pool(&one.state);
+        mf_inversion_pool(&one.state, false);
         assert_close(one.state.pool.samples, 50 * n, 1e-12);
     }
     one.state.gradient = 3.1;
-    mf_inversion_pool(&one.state);
+    mf_inversion_pool(&one.state, false);
     assert_true(one.state.pool.samples == 0);
 }
 
