@@ -5,6 +5,7 @@
 #                     PREFIX=/usr/local (or prefix, and DESTDIR)
 # make docs           docs/reference.md and docs/python-reference.md, which tests compare with what they are made of
 # make test           builds and passes all tests, in their short form (minutes)
+# make ENGINES=1 …    those in which LAMMPS or GROMACS runs, too
 # make check          unit, reference and command-line tests (minutes)
 # make check-physics  laws and exact limits (minutes)
 # make check-long     tests that have a longer form, in that (an hour)
@@ -197,7 +198,7 @@ check-physics: all $(PHYSICS)
 	MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(PHYSICS)
 
 check-long: all $(LONG)
-	LONG=yes MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(LONG)
+	LONG=yes ENGINES=1 MESOFIT=$(abspath $(PROGRAM)) tests/tools/run_tests.sh $(LONG)
 
 # The live view: who looks changes nothing, and the page in a browser, if there is one (Debian:
 # chromium, chromium-driver, python3-selenium).

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Snapshots and beads, opened by GROMACS and LAMMPS, and beads by ASE: they hold what was written
-beside them. The programs are Debian's; without them a test is skipped."""
+beside them. The programs are Debian's, and run for ENGINES=1; without them a test is skipped."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -18,6 +19,8 @@ NUMBER = r"[-+]?\d[^,}\s]*"
 
 
 def run(program, *words, folder):
+    if "ENGINES" not in os.environ:
+        pytest.skip("ENGINES=1 runs it, by " + program)
     if shutil.which(program) is None:
         pytest.skip(program + " is not installed")
     found = subprocess.run([program, *map(str, words)], cwd=folder, capture_output=True, text=True,

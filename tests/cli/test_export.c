@@ -3,6 +3,7 @@
 // `mesofit export` from outside. Tables are read back by readers of their own, written from the
 // rules of each engine's source (lab/export.md), and compared with the formula of the
 // potential: Φ = ½ a k_B T (1 − r/r_c)², a = 25, r_c = 0.7 nm, T = 300 K.
+#include "shared/other_engine.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -428,10 +429,7 @@ static void test_mixture_has_a_table_for_each_pair_type(void **state) {
 /// 0.02; it was 0.013. tests/physics/test_export_lammps.c has the long one.
 static void test_lammps_runs_what_was_written(void **state) {
     static struct run_program_result result;
-    if (system("command -v lmp >/dev/null") != 0) {
-        print_message("lmp is not installed: LAMMPS is not run\n");
-        skip();
-    }
+    other_engine_skip_without("lmp");
     small_scenes_write(*state, small_scenes_dpd, "\"samples\": 20", "\"samples\": 400");
     small_scenes_simulate(&result, "out");
     run_export("lammps", "lammps");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Molecules in another program: LAMMPS (Debian's lmp; skipped where there is none) has the energies
+// Molecules in another program: LAMMPS (Debian's lmp, for ENGINES=1) has the energies
 // and forces of the configuration that was exported, law by law, and GROMACS those of its bonds.
 #include "base/memory.h"
 #include "export/export_bonded.h"
@@ -8,6 +8,7 @@
 #include "shared/exported_molecules.h"
 #include "shared/is_close.h"
 #include "shared/lammps_runs.h"
+#include "shared/other_engine.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -78,15 +79,6 @@ static void find_ours(struct ours *ours) {
 }
 
 // Theirs ------------------------------------------------------------------------------------------
-
-static void skip_without(const char *program) {
-    char command[128];
-    snprintf(command, sizeof command, "command -v %s >/dev/null", program);
-    if (system(command) == 0)
-        return;
-    print_message("%s is not installed and not run\n", program);
-    skip();
-}
 
 /// One configuration, order by order.
 static void compare_orders(double per_term) {
@@ -296,7 +288,7 @@ static void compare_gromacs(struct temporary_folder *folder, bool with_tables, d
     static struct run_program_result result;
     static struct ours ours;
     char commands[1024];
-    skip_without("gmx");
+    other_engine_skip_without("gmx");
     make_result(folder, with_tables);
     small_inputs_change(folder, "scene.json", "\"a\": 1}", "\"a\": 1e-6}");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force");

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Molecules of scenes from data files of LAMMPS: one that LAMMPS has written, with the energy that
-// it has for it; other styles beside LAMMPS itself (Debian's lmp; skipped where there is none); our
+// it has for it; other styles beside LAMMPS itself (Debian's lmp, for ENGINES=1); our
 // own export read again; and files that cannot be right.
 #include "shared/is_close.h"
+#include "shared/other_engine.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -157,10 +158,7 @@ static void test_all_styles_have_the_energies_of_lammps(void **state) {
     };
     static struct run_program_result result;
     static char text[DATA_SIZE], changed[DATA_SIZE];
-    if (system("command -v lmp >/dev/null") != 0) {
-        print_message("lmp is not installed and not run\n");
-        skip();
-    }
+    other_engine_skip_without("lmp");
     read_fixture(text);
     small_inputs_write(*state, "scene.json", scene, NULL, NULL);
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {

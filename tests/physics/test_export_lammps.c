@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is exported, run by LAMMPS (Debian's lmp; skipped where there is none): water with the
+// What is exported, run by LAMMPS (Debian's lmp, for ENGINES=1): water with the
 // shipped potential has the g(r), temperature and pressure of our own simulation, and a fluid with
 // the friction of the package DPD-BASIC, where lmp has that, also its diffusion.
 #include "shared/lammps_runs.h"
 #include "shared/length.h"
+#include "shared/other_engine.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -170,7 +171,7 @@ static void test_lammps_has_our_friction(void **state) {
     compare_friction(*state, "lmp", "dpd");
 }
 
-/// The pair style of share/lammps, with Debian's liblammps-dev as README there says.
+/// The pair style of share/lammps, with Debian's liblammps-dev as README there says: built always.
 static void test_lammps_has_our_friction_by_our_pair_style(void **state) {
     char command[2048];
     if (system("pkg-config --exists liblammps 2>/dev/null && command -v mpicxx >/dev/null && "
@@ -184,6 +185,7 @@ static void test_lammps_has_our_friction_by_our_pair_style(void **state) {
              "lmp_mesofit.cpp pair_mesofit_table.cpp $(pkg-config --libs liblammps)",
              run_program_sources());
     assert_int_equal(system(command), 0);
+    other_engine_skip_without("./lmp_mesofit");
     compare_friction(*state, "../lmp_mesofit", "exact");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Energies of local densities as they are exported, run by LAMMPS (Debian's lmp with its package
-// MANYBODY; skipped where there is none): its energy, pressure and forces of the configuration are
+// MANYBODY, for ENGINES=1): its energy, pressure and forces of the configuration are
 // ours, and its fluid has our g(r), pressure and densities.
 #include "curves/weight.h"
 #include "export/export_units.h"

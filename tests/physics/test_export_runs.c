@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What is exported, run as its README says (each skipped where the engine is not installed).
-// LAMMPS, Debian's lmp: energies and forces of a hundred configurations of mixtures and chains are
-// ours, a run has our g(r), and at another pressure the density that the README tells. OpenMM:
-// mixtures; GROMACS: chains without pairs, of which it has no tables; both have our g(r).
+// What is exported, run as its README says: OpenMM where it is installed, LAMMPS and GROMACS for
+// ENGINES=1. LAMMPS, Debian's lmp: energies and forces of a hundred configurations of mixtures and
+// chains are ours, a run has our g(r), and at another pressure the density that the README tells.
+// OpenMM: mixtures; GROMACS: chains without pairs, of which it has no tables; both have our g(r).
 #include "shared/lammps_runs.h"
 #include "shared/length.h"
+#include "shared/other_engine.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -136,13 +137,6 @@ static void test_density_follows_the_pressure(void **state) {
 
 // By `measure` ------------------------------------------------------------------------------------
 
-static void skip_without(const char *command) {
-    if (system(command) == 0)
-        return;
-    print_message("not there, and not run: %s\n", command);
-    skip();
-}
-
 static void export_in_nm(struct temporary_folder *folder, const char *scene, const char *from,
                          const char *to, const char *engine) {
     small_inputs_write(folder, "scene.json", scene, "\"precision\": \"double\",",
@@ -182,7 +176,10 @@ static void compare_measured(const char *name, double bound) {
 
 /// Of a hundred frames; without the pairs g is 0.3 apart.
 static void test_mixture_of_openmm_is_ours(void **state) {
-    skip_without("/usr/bin/python3 -c 'import openmm' 2>/dev/null");
+    if (system("/usr/bin/python3 -c 'import openmm' 2>/dev/null") != 0) {
+        print_message("skipped: OpenMM is not installed\n");
+        skip();
+    }
     export_in_nm(*state, mixture, "\"seed\": 5", "\"seed\": 6", "openmm");
     if (system("cd openmm && PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 run.py 600 >run.out 2>&1"))
         fail_msg("OpenMM failed: %s", temporary_folder_read("openmm/run.out"));
@@ -202,7 +199,7 @@ static void test_chains_of_gromacs_are_ours(void **state) {
         "grompp.mdp && "
         "printf 'rcoulomb = 0.5\\nrvdw = 0.5\\nnsteps = 40000\\n') >once.mdp && (gmx grompp -f "
         "once.mdp -p once.top -n index.ndx -maxwarn 9 && gmx mdrun -nt 1) >gmx.out 2>&1";
-    skip_without("command -v gmx >/dev/null");
+    other_engine_skip_without("gmx");
     export_in_nm(*state, chains, "\"a\": 20", "\"a\": 1e-6", "gromacs");
     if (system(command) != 0)
         fail_msg("GROMACS failed: %s", temporary_folder_read("gromacs/gmx.out"));

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "export/export_units.h"
 #include "forces/bonded.h"
+#include "shared/other_engine.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
@@ -13,13 +14,12 @@
 #include <string.h>
 
 void lammps_runs_skip_without(const char *style) {
-    char command[256] = "command -v lmp >/dev/null";
-    if (style)
-        snprintf(command, sizeof command, "lmp -h 2>/dev/null | grep -q '%s'", style);
+    char command[256];
+    other_engine_skip_without("lmp");
+    snprintf(command, sizeof command, "lmp -h 2>/dev/null | grep -q '%s'", style ? style : "");
     if (system(command) == 0)
         return;
-    print_message("lmp%s%s is not installed: LAMMPS is not run\n", style ? " with " : "",
-                  style ? style : "");
+    print_message("skipped: lmp lacks %s\n", style);
     skip();
 }
 

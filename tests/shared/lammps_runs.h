@@ -5,7 +5,8 @@
 
 #include "export/export_model.h"
 
-/// Skip the test where there is no lmp, or where it lacks a style; NULL: none is asked for.
+/// Skip the test where LAMMPS is not to run (shared/other_engine.h), or lacks a style; NULL: none
+/// is asked for.
 void lammps_runs_skip_without(const char *style);
 
 /// The exported configuration as our engine has it, with forces, energy and virial.

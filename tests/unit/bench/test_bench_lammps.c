@@ -5,6 +5,7 @@
 #include "report/program.h"
 #include "shared/fluids.h"
 #include "shared/is_close.h"
+#include "shared/other_engine.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
@@ -50,11 +51,6 @@ static void clear_liquid(struct liquid *liquid) {
     mf_scene_clear(&liquid->scene);
 }
 
-static void skip_without_lammps(void) {
-    if (system("command -v lmp >/dev/null") != 0)
-        skip();
-}
-
 /// LAMMPS reads its input and finds temperature, energy and pressure of the same state.
 static void check_first_state(struct temporary_folder *folder, bool from_table) {
     static const char *const words[] = {"lmp",  "-in", "in.bench", "-log",  "none", "-var",
@@ -79,12 +75,12 @@ static void check_first_state(struct temporary_folder *folder, bool from_table) 
 }
 
 static void test_bench_lammps_write_gives_the_same_lennard_jones(void **state) {
-    skip_without_lammps();
+    other_engine_skip_without("lmp");
     check_first_state(*state, false);
 }
 
 static void test_bench_lammps_write_gives_the_same_table(void **state) {
-    skip_without_lammps();
+    other_engine_skip_without("lmp");
     check_first_state(*state, true);
 }
 
