@@ -177,9 +177,12 @@ $(SHARED_ARCHIVE): $(SHARED)
 	@echo "ar $@"
 	$(AT)ar rcs $@ $^
 
-# Without what debuggers read of the library, which is most of a program.
+# Without what debuggers read of the library, which is most of a program, nor is it written for what
+# is linked so. Tests that run the program compute next to nothing themselves.
 STRIP_TEST = $(if $(SANITIZE),,-Wl,--strip-debug)
 $(TESTS) $(STRESS): CFLAGS += -Itests
+$(TESTS:=.o) $(STRESS:=.o): CFLAGS += $(if $(SANITIZE),,-g0)
+$(CLI:=.o): CFLAGS += -O1
 $(filter $(BUILD)/tests/unit/live/%,$(UNIT)): $(LIVE)
 $(TESTS) $(STRESS): %: %.o $(SHARED_ARCHIVE) $(LIBRARY)
 	@echo "ld $@"
