@@ -36,9 +36,10 @@ static const char fit[] =
     "\"method\": {" METHOD "}, \"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"
     "\"verification\": {\"replicas\": 2, \"equilibration\": 50, \"samples\": 10, \"every\": 5}}\n";
 
+/// Few samples: where g agrees they double nine times, as the precision is out of reach.
 #define INVERSION(name)                                                                            \
     "\"name\": \"" name                                                                            \
-    "\", \"replicas\": 4, \"equilibration\": 10, \"samples\": 30, \"every\": 2, "                  \
+    "\", \"replicas\": 4, \"equilibration\": 10, \"samples\": 8, \"every\": 1, "                   \
     "\"iterations\": 4, \"precision\": 1e-4"
 
 #define EVALUATION                                                                                 \
