@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // `mesofit bench engine` from outside: its JSON and its table, bad input, no LAMMPS.
+#include "shared/other_engine.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -119,8 +120,7 @@ static void test_comparison_without_lammps_is_one_clear_line(void **state) {
 
 static void test_comparison_leaves_out_scenes_with_friction(void **state) {
     static struct run_program_result result;
-    if (system("command -v lmp >/dev/null") != 0)
-        skip();
+    other_engine_skip_without("lmp");
     small_inputs_write(*state, "small.json", small_inputs_scene, NULL, NULL);
     RUN_PROGRAM(&result, "bench", "engine", "small.json", "--against-lammps", "--json");
     run_program_assert_code(&result, 0);

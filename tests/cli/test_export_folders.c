@@ -2,6 +2,7 @@
 //
 // `mesofit export` from outside: what is refused, told and spared, and where a fit lets another run
 // begin. What stands in the tables: test_export.c.
+#include "shared/other_engine.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -195,7 +196,7 @@ static void test_folders_may_have_quotes_in_their_names(void **state) {
     static struct run_program_result result;
     static const char *const folders[] = {"it's", "q\"q", "d$x", "\xc3\xbc", "plain one"};
     char whole[1200];
-    const bool runs = system("command -v lmp >/dev/null") == 0;
+    const bool runs = other_engine_runs("lmp");
     small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
     small_scenes_simulate(&result, "out");
     for (int k = 0; k < 5; k++) {

@@ -6,15 +6,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-void other_engine_skip_without(const char *program) {
+bool other_engine_runs(const char *program) {
     char command[128];
-    if (getenv("ENGINES") == NULL) {
-        print_message("skipped: ENGINES=1 runs it, by %s\n", program);
-        skip();
-    }
     snprintf(command, sizeof command, "command -v %s >/dev/null", program);
-    if (system(command) == 0)
-        return;
-    print_message("skipped: %s is not installed\n", program);
-    skip();
+    const bool wanted = getenv("ENGINES") != NULL, runs = wanted && system(command) == 0;
+    if (!wanted)
+        print_message("skipped: ENGINES=1 runs it, by %s\n", program);
+    else if (!runs)
+        print_message("skipped: %s is not installed\n", program);
+    return runs;
+}
+
+void other_engine_skip_without(const char *program) {
+    if (!other_engine_runs(program))
+        skip();
 }

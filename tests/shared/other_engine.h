@@ -3,5 +3,10 @@
 /// machine that happens to have one of them does not.
 #pragma once
 
-/// Skip the test, and say why, without ENGINES=1 or where there is no such program: lmp or gmx.
+#include <stdbool.h>
+
+/// Whether a program, lmp or gmx, is to run: there is one, and ENGINES=1. Says so if it is not.
+bool other_engine_runs(const char *program);
+
+/// Skip the test where it is not.
 void other_engine_skip_without(const char *program);
