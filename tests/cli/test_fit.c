@@ -29,10 +29,12 @@ static const char fit[] =
     "\"method\": {" METHOD "}, \"core\": {\"threshold\": 0.05, \"stiffness\": 50},\n"
     "\"verification\": {\"replicas\": 2, \"equilibration\": 50, \"samples\": 10, \"every\": 5}}\n";
 
-#define INVERSION(name)                                                                            \
-    "\"name\": \"" name                                                                            \
-    "\", \"replicas\": 4, \"equilibration\": 10, \"samples\": 30, \"every\": 2, "                  \
-    "\"iterations\": 4, \"precision\": 1e-4"
+/// Few samples: where g agrees they double nine times, as the precision is out of reach.
+#define FEW "\"samples\": 8, \"every\": 1"
+#define INVERSION_BY(name, samples)                                                                \
+    "\"name\": \"" name "\", \"replicas\": 4, \"equilibration\": 10, " samples                     \
+    ", \"iterations\": 4, \"precision\": 1e-4"
+#define INVERSION(name) INVERSION_BY(name, FEW)
 
 #define IMC INVERSION("imc")
 
@@ -180,8 +182,9 @@ static void write_pressure_fit(struct temporary_folder *folder, const char *meth
 }
 
 static void test_interrupted_fit_of_a_pressure_goes_on_with_the_same_bits(void **state) {
-    static const char *const methods[] = {IMC, INVERSION("ibi"), INVERSION("hnc"),
-                                          INVERSION("auto")};
+    // The steps of "ibi" follow the noise: of few samples one seed in ten is off by 1.1.
+    static const char *const methods[] = {IMC, INVERSION_BY("ibi", "\"samples\": 30, \"every\": 2"),
+                                          INVERSION("hnc"), INVERSION("auto")};
     for (size_t k = 0; k < sizeof methods / sizeof *methods; k++) {
         write_pressure_fit(*state, methods[k]);
         run_fit("out", "2", UNCONVERGED);
