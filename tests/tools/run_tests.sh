@@ -85,6 +85,6 @@ lost=$(($# - $(wc -l <"$counts")))
 [ "$lost" -eq 0 ] || echo "$lost programs did not come to their end"
 total="total: $passed passed, $((failed + lost)) failed"
 [ "$skipped" -eq 0 ] || total="$total, $skipped skipped"
-[ -n "${ENGINES:-}" ] || total="$total; ENGINES=1 runs those in which LAMMPS or GROMACS runs"
+[ -n "${ENGINES:-}" ] || echo "ENGINES=1 runs those in which LAMMPS or GROMACS runs, too"
 echo "$total"
 [ "$((failed + lost))" -eq 0 ]
