@@ -40,18 +40,33 @@ struct quantity {
     const char *name;
 };
 
-static size_t list(const struct inversion_state *state, struct quantity quantity[MAX_QUANTITIES]) {
-    size_t n = 0;
+static bool is_size(size_t sum) {
+    return sum == SAMPLER_GYRATION || sum == SAMPLER_ENDS;
+}
+
+/// Add those sums that move, which are sizes of molecules or not.
+static size_t list_sums(const struct inversion_state *state, bool sizes,
+                        struct quantity quantity[MAX_QUANTITIES], size_t n) {
     for (size_t k = 0; k < SAMPLER_SUMS; k++)
-        if (mf_comoments_covariance(&state->replicas.counts, state->bins + k, state->bins + k) > 0)
+        if (is_size(k) == sizes &&
+            mf_comoments_covariance(&state->replicas.counts, state->bins + k, state->bins + k) > 0)
             quantity[n++] = (struct quantity){1, state->bins + k, NULL, sums[k]};
+    return n;
+}
+
+/// @param[out] others  so many stand before the sizes of molecules; or NULL
+static size_t list(const struct inversion_state *state, struct quantity quantity[MAX_QUANTITIES],
+                   size_t *others) {
+    size_t n = list_sums(state, false, quantity, 0);
     for (int k = 0; k < state->assessment.sections; k++) {
         const struct inversion_section *section = &state->assessment.section[k];
         quantity[n++] = (struct quantity){
             section->known_count, 0, state->grid.known_bin + section->known,
             section->kind == TARGET_RDF ? "g(r)" : mf_targets_name(section->kind)};
     }
-    return n;
+    if (others)
+        *others = n;
+    return list_sums(state, true, quantity, n);
 }
 
 /// Bins with fewer counts in each block are tested with all others alone: they are not normal.
@@ -181,7 +196,7 @@ void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
                                       struct inverse_slowest *slowest) {
     const struct replicas *replicas = &state->replicas;
     struct quantity quantity[MAX_QUANTITIES];
-    const size_t count = list(state, quantity);
+    const size_t count = list(state, quantity, NULL);
     for (size_t k = 0; k < count; k++) {
         const size_t *number = quantity[k].number ? quantity[k].number : &quantity[k].first;
         const size_t numbers = quantity[k].count;
@@ -200,15 +215,18 @@ void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
 enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
                                            struct inversion_unequilibrated *unequilibrated) {
     struct quantity quantity[MAX_QUANTITIES];
-    const size_t count = list(state, quantity);
+    size_t others;
+    const size_t count = list(state, quantity, &others);
     double min = false_alarm / (double)(TESTS * count);
     const double limit = min;
-    unequilibrated->found = unequilibrated->drifts = false;
+    unequilibrated->found = unequilibrated->drifts = unequilibrated->beside_sizes = false;
     for (size_t k = 0; k < count; k++) {
         struct stationary is;
         TRY(test(state, &quantity[k], &is));
         const double chance = stationary_p_value(&is);
         unequilibrated->drifts = unequilibrated->drifts || is.drift < limit;
+        unequilibrated->beside_sizes =
+            unequilibrated->beside_sizes || (k < others && chance < limit);
         if (!(chance < min))
             continue;
         min = chance;
@@ -219,6 +237,7 @@ enum status mf_inversion_equilibrium_check(const struct inversion_state *state,
     const size_t apart =
         has_sides(&state->replicas) ? find_apart(&state->replicas, quantity, count) : count;
     unequilibrated->apart = apart < count;
+    unequilibrated->beside_sizes = unequilibrated->beside_sizes || apart < others;
     if (unequilibrated->apart && !unequilibrated->found) {
         TRY(test(state, &quantity[apart], &unequilibrated->is));
         snprintf(unequilibrated->quantity, sizeof unequilibrated->quantity, "%s",

@@ -28,6 +28,7 @@ struct inversion_unequilibrated {
     bool found;
     bool drifts;                            ///< something does, and not only remembers
     bool apart;                             ///< halves that began so, by more than their scatter
+    bool beside_sizes;                      ///< not R_g² and R_e² of molecules alone
     char quantity[INVERSION_QUANTITY_SIZE]; ///< in words
     struct stationary is;
     uint64_t sweeps; ///< of each replica since the potential was changed

@@ -141,6 +141,18 @@ static uint64_t find_most_sweeps(const struct sampling *sampling, uint64_t first
     return before < least ? least : before > most ? most : before;
 }
 
+/// Whether samples must settle before a step is made of them. Where sizes of molecules alone
+/// remember, while g(r), lengths and angles do not, they are no worse than their replicas' scatter
+/// says, and do for a step; not for the last one.
+static bool waits(const struct inversion_state *state) {
+    const struct inversion_assessment *assessment = &state->assessment;
+    bool agrees = true;
+    for (int k = 0; k < assessment->sections; k++)
+        agrees = agrees && inversion_section_agrees(&assessment->section[k]);
+    return assessment->unequilibrated.found && !mf_inversion_is_far_beyond_drift(state) &&
+           (assessment->unequilibrated.beside_sizes || agrees);
+}
+
 /// Whether samples that have not settled are given up: they have cost enough; they are those of a
 /// first start under tension, with another start to be tried; or each more takes them farther from
 /// the targets, and they could not be kept, or there is another start. Of several states only all
@@ -208,14 +220,12 @@ static enum status settle(struct sampling *sampling) {
 /// Sample until they have settled and are exact enough, or are given up.
 static enum status sample_all(struct sampling *sampling) {
     struct inversion_state *state = sampling->state;
-    const struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
     TRY(take(sampling, false));
     sampling->progress.done = sampling->progress.total = (uint64_t)state->parameters->replicas;
     for (;;) {
-        const bool waits = unequilibrated->found && !mf_inversion_is_far_beyond_drift(state);
-        if (waits && is_hopeless(sampling))
+        if (waits(state) && is_hopeless(sampling))
             return STATUS_OK;
-        if (waits)
+        if (waits(state))
             TRY(settle(sampling));
         else if (needs_samples(state, &sampling->progress.doubling))
             TRY(take(sampling, true));
@@ -255,8 +265,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     unequilibrated->sweeps = sampling.sweeps;
     state->work.memory = state->inefficiency * (double)sampling.plan.every;
     state->assessment.unstable = unstable;
-    state->assessment.useless =
-        unstable || (unequilibrated->found && !mf_inversion_is_far_beyond_drift(state));
+    state->assessment.useless = unstable || waits(state);
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

@@ -69,18 +69,20 @@ static void test_what_has_not_settled_is_named(void **state) {
     static const struct {
         size_t number;
         const char *name;
-    } kind[] = {{BINS + SAMPLER_VIRIAL, "the pressure"},
-                {BINS + SAMPLER_ENERGY, "the energy"},
-                {BINS + SAMPLER_GYRATION, "R_g^2 of the molecules"},
-                {BINS + SAMPLER_ENDS, "R_e^2 of the molecules"},
-                {BINS + SAMPLER_WAVES, "the longest waves of the types"},
-                {3, "g(r)"}};
+        bool beside_sizes;
+    } kind[] = {{BINS + SAMPLER_VIRIAL, "the pressure", true},
+                {BINS + SAMPLER_ENERGY, "the energy", true},
+                {BINS + SAMPLER_GYRATION, "R_g^2 of the molecules", false},
+                {BINS + SAMPLER_ENDS, "R_e^2 of the molecules", false},
+                {BINS + SAMPLER_WAVES, "the longest waves of the types", true},
+                {3, "g(r)", true}};
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (size_t k = 0; k < sizeof kind / sizeof *kind; k++) {
         make(&made, rng, kind[k].number, 12);
         assert_ok(mf_inversion_equilibrium_check(&made.state, &made.found));
         assert_true(made.found.found && made.found.drifts);
         assert_string_equal(made.found.quantity, kind[k].name);
+        assert_true(made.found.beside_sizes == kind[k].beside_sizes);
     }
     make(&made, rng, 0, 0);
     for (size_t b = 0; b < REPLICAS_BLOCKS; b++)
