@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "io/data_table.h"
+#include "observe/bound_pairs.h"
 #include "observe/measure.h"
 
 #include <math.h>
@@ -84,6 +85,7 @@ static enum status begin(void *state, const void *settings,
     struct rdf_observed *observed = state;
     const size_t samples = (size_t)plan->samples;
     const double cutoff = mf_stages_cutoff(setup);
+    observed->time = (double)(plan->samples * plan->every) * setup->time_step;
     TRY(check(s, setup));
     const struct rdf_bins bins = bins_of(s, setup);
     const bool force = uses_force(s, setup);
@@ -209,11 +211,28 @@ static enum status write(const void *state, const struct observable_results *res
     return STATUS_OK;
 }
 
+/// Whether the samples are long beside the time that pairs of a type stay together.
+static enum status assess_binding(const struct simulation_setup *setup, int pair, double time) {
+    static const double deep = 3, enough = 10;
+    const struct bound_pairs bound = mf_bound_pairs_find(setup, pair);
+    char name[COMPOSITION_PAIR_NAME_SIZE];
+    if (bound.depth < deep || time >= enough * bound.lifetime)
+        return STATUS_OK;
+    mf_composition_pair_name(&setup->composition, pair, name);
+    return mf_status_fail(STATUS_UNCONVERGED,
+                          "pairs%s%s stay for %.3g" STATUS_TIME " or longer in their well of %.2g "
+                          "k_B T, and the samples cover %.3g" STATUS_TIME
+                          ": their g(r) may remember the start, and its errors may be too small; "
+                          "run for at least %.3g" STATUS_TIME ", or compare seeds",
+                          name[0] ? " " : "", name, bound.lifetime, bound.depth, time,
+                          enough * bound.lifetime);
+}
+
 /// A table without a number is not written, and a warning says so.
 static enum status assess(const void *state, const struct simulation_setup *setup) {
-    const struct rdf *rdf = &((const struct rdf_observed *)state)->counted;
+    const struct rdf_observed *const observed = state;
+    const struct rdf *rdf = &observed->counted;
     char name[COMPOSITION_PAIR_NAME_SIZE];
-    (void)setup;
     for (int pair = 0; pair < (int)rdf->pairs; pair++) {
         mf_composition_pair_name(&rdf->composition, pair, name);
         if (!mf_composition_has_pairs(&rdf->composition, pair))
@@ -222,6 +241,8 @@ static enum status assess(const void *state, const struct simulation_setup *setu
                                   "that type",
                                   name);
     }
+    for (int pair = 0; pair < mf_composition_pairs(&setup->composition); pair++)
+        TRY(assess_binding(setup, pair, observed->time));
     return STATUS_OK;
 }
 

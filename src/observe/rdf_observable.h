@@ -18,6 +18,7 @@ struct rdf_settings {
 struct rdf_observed {
     struct rdf counted;
     struct rdf_force force;
+    double time; ///< from the first sample to the last [τ]
 };
 
 /// Of beads of different molecules, and of single ones.

@@ -207,6 +207,27 @@ static void test_interrupted_force_covariance_goes_on_with_the_same_bits(void **
 #define TEST_WITHOUT_FIGURES(name)                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
+/// Beads in wells of 6.4 k_B T are frozen for as long as the samples take, and scatter little.
+static void test_simulate_tells_of_pairs_that_stay_together_for_the_whole_run(void **state) {
+    static struct run_program_result result;
+    static const char scene[] =
+        "{\"box\": [5, 5, 5], \"time_step\": 0.01, \"particles\": {\"types\": {\"A\": 24, "
+        "\"B\": 150}, \"placement\": \"random\"}, \"conservative\": {\"A-A\": {\"law\": "
+        "\"expression\", \"formula\": \"30*exp(-(r/0.3)^2)-7*exp(-((r-0.6)/0.15)^2)\", "
+        "\"cutoff\": 1.1}, \"A-B\": {\"law\": \"soft-repulsion\", \"a\": 10}, \"B-B\": {\"law\": "
+        "\"soft-repulsion\", \"a\": 10}}, \"dissipative\": {\"law\": \"power\", \"sigma\": 2.5}, "
+        "\"measure\": {\"equilibration\": 100, \"samples\": 20, \"every\": 10}}";
+    temporary_folder_write(*state, "sticky.json", scene, sizeof scene - 1);
+    RUN_PROGRAM(&result, "simulate", "sticky.json", "-o", "sticky", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err,
+                    "warning: pairs A-A stay for 49.3 or longer in their well of 6.4 k_B T");
+    write_scene(*state, "", MEASURE);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "loose", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "stay for"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_simulate_measures_escape_times_when_asked),
@@ -218,6 +239,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_measures_the_force_covariance_when_asked),
         TEST_WITHOUT_FIGURES(test_simulate_refuses_a_force_covariance_without_friction_forces),
         TEST_WITHOUT_FIGURES(test_interrupted_force_covariance_goes_on_with_the_same_bits),
+        TEST_WITHOUT_FIGURES(test_simulate_tells_of_pairs_that_stay_together_for_the_whole_run),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
