@@ -63,6 +63,8 @@ def array_of(values: Any, what: str) -> Array:
     if _is_masked(values):
         raise InputError(f"{what}: values are masked; leave them out, or fill them")
     try:
+        if np.iscomplexobj(values):
+            raise TypeError("values are complex; their real or imaginary part is a number")
         return np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError) as fault:
         raise InputError(f"{what}: {fault}") from None

@@ -200,6 +200,12 @@ def test_what_is_masked_has_no_value(call):
         call()
 
 
+def test_complex_values_are_no_numbers():
+    with pytest.raises(mesofit.InputError, match="positions: values are complex"):
+        mesofit.Frames(np.ones((2, 5, 3)) * 1j, box=[3, 3, 3])
+
+
+
 def test_a_copy_takes_no_writes():
     simulation = mesofit.Simulation(SCENE)
     for copy in (simulation.positions, simulation.velocities, simulation.box):

@@ -49,9 +49,10 @@ static enum status run(size_t count, const char *const *words) {
     return command->run(&line);
 }
 
-static bool asks_for(int count, char **words, const char *option) {
+/// Whether a word is the option, or its letter.
+static bool asks_for(int count, char **words, const char *option, const char *letter) {
     for (int k = 1; k < count; k++)
-        if (strcmp(words[k], option) == 0)
+        if (strcmp(words[k], option) == 0 || strcmp(words[k], letter) == 0)
             return true;
     return false;
 }
@@ -107,11 +108,11 @@ static enum status help(int count, char **words) {
 }
 
 static enum status act(int count, char **words) {
-    if (asks_for(count, words, "--help"))
+    if (asks_for(count, words, "--help", "-h"))
         return print_help(words[1]);
     if (count > 1 && strcmp(words[1], "help") == 0)
         return help(count, words);
-    if (asks_for(count, words, "--version")) {
+    if (asks_for(count, words, "--version", "-V")) {
         printf("mesofit " MESOFIT_VERSION "\n");
         return STATUS_OK;
     }

@@ -263,8 +263,13 @@ struct batch {
 /// A file that breaks off is over, if that is allowed: the failure becomes a note.
 static enum status forgive(struct batch *batch, enum status status) {
     struct frames *const frames = batch->frames;
-    if (status != STATUS_BAD_INPUT || !frames->plan.allow_truncated)
+    if (status != STATUS_BAD_INPUT)
         return status;
+    if (!frames->plan.allow_truncated)
+        return frames->source[frames->at].read > 0
+                   ? mf_status_fail(status, "%s; --allow-truncated uses what is before",
+                                    mf_status_marked())
+                   : status;
     batch->over = true;
     return note(frames, "%s; what is before it is used", mf_status_message());
 }

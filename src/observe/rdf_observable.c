@@ -241,7 +241,8 @@ static enum status assess(const void *state, const struct simulation_setup *setu
                                   "that type",
                                   name);
     }
-    for (int pair = 0; pair < mf_composition_pairs(&setup->composition); pair++)
+    // A trajectory tells no potential.
+    for (int pair = 0; setup && pair < mf_composition_pairs(&setup->composition); pair++)
         TRY(assess_binding(setup, pair, observed->time));
     return STATUS_OK;
 }

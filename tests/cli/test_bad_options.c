@@ -77,6 +77,8 @@ static void test_help_is_on_stdout_when_asked_for(void **state) {
     run_program_assert_code(&result, 0);
     assert_string_equal(result.out, own);
     free(own);
+    RUN_PROGRAM(&result, "fit", "-h");
+    assert_int_equal(strncmp(result.out, "mesofit fit RUN.json: ", 22), 0);
     RUN_PROGRAM(&result, "help", "fitt");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "fitt");
@@ -90,6 +92,10 @@ static void test_help_is_on_stdout_when_asked_for(void **state) {
     RUN_PROGRAM(&result, "--version");
     run_program_assert_code(&result, 0);
     assert_int_equal(run_program_lines(result.out), 1);
+    own = strdup(result.out);
+    RUN_PROGRAM(&result, "-V");
+    assert_string_equal(result.out, own);
+    free(own);
 }
 
 /// Permissions mean nothing to root: a regular file in the way and /proc mean something to all.
