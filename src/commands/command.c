@@ -21,7 +21,7 @@ const struct command_option mf_command_common[] = {
     {"--resume", NULL, "continue an interrupted run in its folder"},
     {"--force", NULL, "replace a fit, an unfinished run, changed files"},
     {"--quiet", NULL, "no progress, warnings alone"},
-    {"--help", NULL, "(-h) summary, after a command of that one"},
+    {"--help", NULL, "(-h) summary, or a command's"},
     {"--version", NULL, "(-V) version"},
     {NULL, NULL, NULL},
 };
