@@ -198,9 +198,9 @@ static void test_measure_uses_what_is_whole_when_a_file_breaks_off(void **state)
     temporary_folder_write(*state, "broken.xtc", five, (size_t)size - 1000);
     free(five);
     RUN_PROGRAM(&result, "measure", "broken.xtc", "-s", gro, "-o", "no", "--quiet");
-    run_program_assert_refused(&result, ".", "broken", 1,
-                               (const char *const[]){"broken.xtc: frame 4, byte", "ends",
-                                                      "--allow-truncated", NULL});
+    run_program_assert_refused(
+        &result, ".", "broken", 1,
+        (const char *const[]){"broken.xtc: frame 4, byte", "ends", "--allow-truncated", NULL});
     assert_false(temporary_folder_exists("no/rdf.tsv"));
     MEASURE("broken.xtc", "-s", gro, "-o", "broken", "--allow-truncated");
     assert_contains(result.err, "broken.xtc: frame 4, byte");
