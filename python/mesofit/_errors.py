@@ -16,9 +16,19 @@ _FLAGS = ("force", "resume", "static", "allow-truncated", "bands", "project")
 _NAMES = {"s": "structure", "o": "folder"}
 
 
-def said(text: str, frames: bool = False) -> str:
+#: What the program says to do next, and what does the same here.
+_NEXT = ((r"mesofit export .*? --engine lammps", 'export("lammps") of the result'),
+         (r"run the pieces whose folders are listed in .*?, and go on with --engine later --resume",
+          "tell each of `pieces` its frames, and go_on()"))
+
+
+def said(text: str, frames: bool = False, hidden: str = "") -> str:
     """A line of the program with its options as the functions here, or `Frames`, name them. What
-    stands in quotes is a command of the shell."""
+    stands in quotes is a command of the shell; a folder that goes with the result is `hidden`."""
+    for pattern, here in _NEXT:
+        text = re.sub(pattern, here, text)
+    if hidden:
+        text = text.replace(hidden, "result.folder")
     names = {**_NAMES, **({"file-time-step": "times"} if frames else {})}
 
     def name(found: re.Match[str]) -> str:

@@ -157,8 +157,8 @@ class Inversion:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", InterruptedWarning)
-                fit_with(self._target, dict(self._keys), list(self._words), self._place.path, resume,
-                         force, False)
+                fit_with(self._target, dict(self._keys), list(self._words), self._place, resume, force,
+                         False)
         except KeyboardInterrupt:
             if not self._waiting():
                 raise

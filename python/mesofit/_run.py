@@ -182,8 +182,8 @@ class Owned:
 
 
 class _Run:
-    def __init__(self, words: Sequence[str], memory: Memory) -> None:
-        self.outcome = Outcome()
+    def __init__(self, words: Sequence[str], memory: Memory, hidden: str) -> None:
+        self.outcome, self.hidden = Outcome(), hidden
         self.memory, self.inputs = memory, memory.lend()
         self.words = (ctypes.c_char_p * len(words))(*[encode(word, "a word") for word in words])
         self.run = c.lib.mesofit_run_create()
@@ -193,10 +193,13 @@ class _Run:
     def work(self) -> int:
         return int(c.lib.mesofit_run_words(self.run, len(self.words), self.words, self.inputs))
 
+    def said(self, text: str) -> str:
+        return said(text, self.memory.frames is not None, self.hidden)
+
     def look(self, progress: Progress) -> None:
         lines = self.outcome.lines
         while (line := c.lib.mesofit_run_line(self.run, len(lines))) is not None:
-            lines.append(said(line.decode(errors="replace"), self.memory.frames is not None))
+            lines.append(self.said(line.decode(errors="replace")))
             log.info("%s", lines[-1])
             progress.say(lines[-1])
         if progress.wanted:
@@ -215,12 +218,12 @@ class _Run:
 
 
 def carry_out(words: Sequence[str], memory: Memory | None = None,
-              progress: bool | None = None) -> Outcome:
+              progress: bool | None = None, hidden: str = "") -> Outcome:
     """Do what the program does with these words. Raises what the program would fail by, but for
-    UNCONVERGED and INTERRUPTED, which leave results."""
+    UNCONVERGED and INTERRUPTED, which leave results. `hidden`: as of `said`."""
     memory = Memory() if memory is None else memory
     shown = Progress(progress)
-    run = _Run(words, memory)
+    run = _Run(words, memory, hidden)
     work = Work(run.work)
 
     def look() -> None:
@@ -234,7 +237,7 @@ def carry_out(words: Sequence[str], memory: Memory | None = None,
     shown.end()
     outcome = run.outcome
     outcome.status = work.answer
-    outcome.message = said(work.message, memory.frames is not None) if work.answer != c.OK else ""
+    outcome.message = run.said(work.message) if work.answer != c.OK else ""
     for functions in (memory.frames, memory.observables):
         if functions is not None and functions.fault is not None:
             raise functions.fault

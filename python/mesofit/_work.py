@@ -139,13 +139,13 @@ def _options(**options: Any) -> list[str]:
     return words
 
 
-def _carry_out(words: list[str], memory: Memory, folder: PathLike | None, resume: bool,
+def _carry_out(words: list[str], memory: Memory, folder: PathLike | Folder | None, resume: bool,
                force: bool, progress: bool | None) -> Result:
     """Results of words, in a folder of the user's or in a temporary one."""
-    place = Folder(folder)
+    place = folder if isinstance(folder, Folder) else Folder(folder)
     words += ["-o", _path(place.path)]
     words += [word for word, wanted in (("--resume", resume), ("--force", force)) if wanted]
-    outcome = carry_out(words, memory, progress)
+    outcome = carry_out(words, memory, progress, str(place.path) if place.temporary else "")
     if place.temporary:  # it goes with the result
         outcome.message = outcome.message.replace("continue with resume=True",
                                                   "in a folder=… it could be continued")
@@ -266,8 +266,8 @@ def fit(target: Any, /, *, density: float | None = None, temperature: float | No
                     force, progress, density=density, temperature=temperature)
 
 
-def fit_with(target: Any, keys: dict[str, Any], words: list[str], folder: PathLike | None,
-             resume: bool, force: bool, progress: bool | None, *, density: float | None = None,
+def fit_with(target: Any, keys: dict[str, Any], words: list[str],
+             folder: PathLike | Folder | None, resume: bool, force: bool, progress: bool | None, *, density: float | None = None,
              temperature: float | None = None) -> Result:
     """`fit` with keys of the run file and words of the command line."""
     memory = Memory()

@@ -54,6 +54,18 @@ def test_it_goes_on_in_another_object(tmp_path):
                for piece in second.pieces)
 
 
+def test_lines_are_for_python(tmp_path, caplog):
+    caplog.set_level("INFO", "mesofit")
+    inversion = mesofit.Inversion(run_file(tmp_path))
+    while not inversion.ended:
+        tell_all(inversion)
+        inversion.go_on()
+    lines = [record.getMessage() for record in caplog.records]
+    assert sum(line.startswith("target rdf") for line in lines) == 1  # and not in each round
+    assert lines[-1].startswith("next:") and 'export("lammps") of the result' in lines[-1]
+    assert "result.folder/engine" in lines[-1] and str(inversion.result.folder) not in lines[-1]
+
+
 def test_wrong_samples_are_refused(tmp_path):
     inversion = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out")
     piece = inversion.pieces[0]

@@ -124,6 +124,11 @@ def test_options_have_the_names_of_arguments():
         mesofit.measure("x.xtc", q_range="far")
     assert said('give -s, -o DIR or --file-time-step; "gmx trjconv -o traj.xtc --s" makes it, a-o') == (
         'give structure, folder DIR or file_time_step; "gmx trjconv -o traj.xtc --s" makes it, a-o')
+    assert said("next: look in /t/a; mesofit export /t/a --engine lammps writes it", hidden="/t/a") == (
+        'next: look in result.folder; export("lammps") of the result writes it')
+    assert said("waits: run the pieces whose folders are listed in o/engine/waiting, each by its run.sh or as you "
+                "like, and go on with --engine later --resume") == (
+        "waits: tell each of `pieces` its frames, and go_on()")
 
 
 def test_hints_and_numbers_are_those_of_frames():

@@ -257,8 +257,9 @@ void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
     if (result->status == STATUS_OK && mf_fit_engine_knows_more(fit))
         mf_progress_print(to,
                           "next: figures and summary.json are in %s; the potential runs beside the "
-                          "known forces, as the last mesofit.lmp or potential.tsv in %s/engine",
-                          folder, folder);
+                          "known forces, as the last mesofit.lmp or potential.tsv in %s/engine; "
+                          "mesofit export %s --engine lammps writes it alone",
+                          folder, folder, folder);
     else if (result->status == STATUS_OK)
         mf_progress_print(to,
                           "next: figures and summary.json are in %s; mesofit export %s "
