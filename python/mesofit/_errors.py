@@ -9,7 +9,8 @@ from . import _library
 
 
 #: Options that are words alone.
-_FLAGS = ("force", "resume", "static", "allow-truncated", "bands", "project")
+_FLAGS = ("force", "resume", "static", "allow-truncated", "bands", "dynamics",
+          "project")
 
 
 #: Options that have other names here.

@@ -208,8 +208,8 @@ class Result:
     # What is done with it -------------------------------------------------------------------------
 
     def export(self, engine: str, folder: PathLike | None = None, *, bands: bool = False,
-               project: bool = False, force: bool = False, threads: int | None = None,
-               progress: bool | None = None) -> Path:
+               dynamics: bool = False, project: bool = False, force: bool = False,
+               threads: int | None = None, progress: bool | None = None) -> Path:
         """Write the result as files that another engine runs.
 
         Parameters
@@ -220,6 +220,8 @@ class Result:
             Called as the engine, here, if it is not given.
         bands : bool
             Also the potential minus and plus one standard error.
+        dynamics : bool
+            Simulate what D and E(t, r_0) are with the friction that runs there.
         project : bool
             The nearest friction that the engine has.
         force : bool
@@ -241,7 +243,8 @@ class Result:
         """
         target = absolute(engine if folder is None else folder, "folder")
         words = ["export", _path(self.folder), "--engine", engine, "-o", _path(target)]
-        words += [word for word, wanted in (("--bands", bands), ("--project", project),
+        words += [word for word, wanted in (("--bands", bands), ("--dynamics", dynamics),
+                                            ("--project", project),
                                             ("--force", force)) if wanted]
         words += [] if threads is None else ["--threads", str(threads)]
         outcome = carry_out(words, Memory(), progress)

@@ -3,12 +3,14 @@
 #include "export/export_engine.h"
 #include "report/progress.h"
 
-enum { ENGINE, BANDS, PROJECT, TO };
+enum { ENGINE, BANDS, DYNAMICS, PROJECT, TO };
 
 static const struct command_option options[] = {
     [ENGINE] = {"--engine", "lammps|hoomd|espresso|openmm|gromacs|dl_poly|votca",
                 "program for the result"},
     [BANDS] = {"--bands", NULL, "also the potential minus and plus one standard error"},
+    [DYNAMICS] = {"--dynamics", NULL,
+                  "simulate what D and E(t, r_0) are with the friction that runs there"},
     [PROJECT] = {"--project", NULL,
                  "the nearest friction that the engine has; the deviation is simulated"},
     [TO] = {"-o", "DIR", "folder for its files (default: the engine's name, here)"},
@@ -40,6 +42,7 @@ static enum status run(const struct command_line *line) {
         .engine = line->own[ENGINE],
         .to = line->own[TO],
         .bands = line->own[BANDS] != NULL,
+        .dynamics = line->own[DYNAMICS] != NULL,
         .project = line->own[PROJECT] != NULL,
         .force = line->options.force,
         .threads = line->options.threads,

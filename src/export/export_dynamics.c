@@ -93,8 +93,9 @@ enum status mf_export_dynamics_find(struct export_job *job, const struct export_
     job->runs = choose(job);
     if (job->runs == EXPORT_BATH && job->model->thermostat)
         return STATUS_OK; // what moves is no result
-    return job->runs == EXPORT_PROJECTED || job->runs == EXPORT_BATH ? measure(job, request)
-                                                                     : STATUS_OK;
+    return job->runs == EXPORT_PROJECTED || (job->runs == EXPORT_BATH && request->dynamics)
+               ? measure(job, request)
+               : STATUS_OK;
 }
 
 // The block ---------------------------------------------------------------------------------------
@@ -235,6 +236,10 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
         print_number(stream, &job->model->diffusion, diffusion);
         fprintf(stream, " %s^2/%s of the result\n", units->length_name, units->time_name);
     }
+    if (!job->measured && !job->unmeasured[0] && !job->model->thermostat &&
+        job->runs == EXPORT_BATH)
+        fprintf(stream, "%sdiffusion  export --dynamics simulates what D is in that bath\n",
+                prefix);
     print_instead(job, prefix, stream);
 }
 

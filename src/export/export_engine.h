@@ -97,6 +97,7 @@ struct export_request {
     const char *from, *engine;
     const char *to; ///< folder; NULL: called as the engine
     bool bands;     ///< Φ less and plus one standard error, too
+    bool dynamics;  ///< what moves otherwise there is measured
     bool project;   ///< the nearest power law of the engine stands for ω, and its cost is measured
     bool force;     ///< replace also files of an earlier export that were changed since
     int threads;    ///< of that measurement

@@ -65,7 +65,7 @@ static void test_block_is_printed_and_stands_in_the_files(void **state) {
     static const char *const lines[] = {"friction", "D ", "E(t, r_0)"};
     char printed[512], other[512];
     simulate(*state, soft_fluid, "0.5");
-    char *said = strdup(export_to("hoomd", NULL));
+    char *said = strdup(export_to("hoomd", "--dynamics"));
     const char *const files[] = {"hoomd/README", "hoomd/run.py"};
     for (int f = 0; f < 2; f++) {
         char *text = temporary_folder_read(files[f]);
@@ -86,7 +86,13 @@ static void test_block_is_printed_and_stands_in_the_files(void **state) {
     assert_true(diffusion > 0 && fabs(number_after(printed, "D ") / diffusion - 1) < 1e-3);
     assert_null(strstr(strstr(printed, "of the result, in that bath"), "+-"));
     free(said);
-    assert_contains(export_to("gromacs", NULL), "integrator sd");
+    // What the summary knows is told without a simulation, which is there for who asks.
+    const char *short_one = export_to("gromacs", NULL);
+    assert_contains(short_one, "integrator sd");
+    assert_null(strstr(short_one, "simulating"));
+    find_line(short_one, "D ", printed);
+    assert_true(fabs(number_after(printed, "D ") / diffusion - 1) < 1e-3);
+    assert_contains(short_one, "export --dynamics simulates what D is in that bath");
     char *settings = temporary_folder_read("gromacs/grompp.mdp");
     assert_contains(settings, "; friction   NOT that of the result");
     free(settings);
@@ -138,7 +144,7 @@ static void test_diffusion_of_the_bath_is_that_of_ornstein(void **state) {
     char line[512];
     double sum_t = 0, sum_m = 0, sum_tt = 0, sum_tm = 0;
     simulate(*state, thin_gas, NULL);
-    char *said = strdup(export_to("hoomd", NULL));
+    char *said = strdup(export_to("hoomd", "--dynamics"));
     find_line(said, "friction", line);
     const double rate = 1 / number_after(line, "m/gamma = ");
     find_line(said, "D ", line);

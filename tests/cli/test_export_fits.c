@@ -108,7 +108,7 @@ static void test_friction_weight_that_was_found_is_exported(void **state) {
 }
 
 /// What was found across pairs goes to engines that have it, as near as they do; memory to none,
-/// and what that changes D by is told.
+/// and what tells how D changes is named.
 static void test_memory_that_was_found_is_left_out_and_told(void **state) {
     static const char *const unknowns[] = {
         "\"omega\": {\"coefficients\": 4, \"maximum\": 6}, \"omega_transverse\": "
@@ -124,7 +124,7 @@ static void test_memory_that_was_found_is_left_out_and_told(void **state) {
         assert_contains(text, "; mesofit's own was 0.02 tau: the same, as");
         assert_contains(text, k ? "Friction with memory is left out" : "A-A, across pairs: gamma");
         assert_contains(text, "NOT that of the result");
-        assert_contains(text, " of the result, ");
+        assert_contains(text, "export --dynamics simulates what D is");
         assert_contains(text, k ? "NOT that of the result: a Langevin bath" : "dpd/ext/tstat");
         free(text);
     }
@@ -260,7 +260,7 @@ static void test_friction_that_was_chosen_is_not_left_out(void **state) {
         assert_int_equal(strstr(result.err, "friction   no result, but chosen to hold") == NULL,
                          own);
         assert_int_equal(strstr(result.err, "omega(r), conserved momentum and flow are left out") &&
-                             strstr(result.err, "simulating"),
+                             strstr(result.err, "export --dynamics"),
                          own);
         // A fit of what used.json says knows no less.
         RUN_PROGRAM(&result, "fit", "fit/used.json", "-o", "again", "--force");
