@@ -61,12 +61,26 @@ static void set_scene(const struct engine_run *run, const struct engine_piece *p
     model->rdf_range = piece->potential->cutoff;
 }
 
+/// All that is exchanged is in these units.
+static enum status check_units(const struct engine_run *run, const struct lammps_input *input) {
+    const bool real = mf_units_known(&run->fit->scene.units);
+    if (input->units[0] == '\0' || strcmp(input->units, real ? "real" : "lj") == 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: its units are %s where the run file %s: write `units %s` there, or "
+                          "%s the run file",
+                          run->settings->input, input->units,
+                          real ? "has \"units\"" : "has no \"units\"", real ? "real" : "lj",
+                          real ? "leave \"units\" out of" : "give \"units\" in");
+}
+
 /// The input of a user. What it says must not change while a fit goes on.
 static enum status check_input(const struct engine_run *run, struct shared *shared) {
     const char *file = run->settings->input, *slash = strrchr(file, '/');
     char folder[OUTPUT_PATH_SIZE], path[OUTPUT_PATH_SIZE];
     unsigned long long before = 0;
     TRY(mf_lammps_input_read(&shared->files, file));
+    TRY(check_units(run, &shared->files));
     shared->input = slash ? slash + 1 : file;
     mf_engine_path(run->folder, "engine", folder);
     mf_engine_path(folder, "inputs", path);

@@ -102,6 +102,8 @@ static enum status read_command(struct lammps_input *input, const char *folder, 
         input->sets_style = true;
         input->is_hybrid = words > 1 && strncmp(word[1], "hybrid", strlen("hybrid")) == 0;
     }
+    if (strcmp(word[0], "units") == 0 && words > 1)
+        snprintf(input->units, sizeof input->units, "%s", strchr(word[1], '$') ? "" : word[1]);
     if (strcmp(word[0], "include") == 0 && words > 1) {
         input->has_interactions |= strcmp(word[1], "mesofit.lmp") == 0;
         input->has_run |= strcmp(word[1], "mesofit-run.lmp") == 0;
@@ -152,7 +154,7 @@ static enum status read_file(struct lammps_input *input, const char *folder, con
 enum status mf_lammps_input_read(struct lammps_input *input, const char *file) {
     const char *slash = strrchr(file, '/'), *name = slash ? slash + 1 : file;
     char folder[OUTPUT_PATH_SIZE];
-    *input = (struct lammps_input){.digest = DIGEST_OF_NOTHING};
+    *input = (struct lammps_input){.digest = DIGEST_OF_NOTHING, .units = "lj"}; // LAMMPS's default
     snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - file) + 1 : 0, file);
     TRY(read_file(input, folder, name, 0));
     TRY(add_file(input, folder, name));

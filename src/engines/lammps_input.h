@@ -9,11 +9,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { LAMMPS_INPUT_FILES = 64, LAMMPS_INPUT_NAME = 256 };
+enum { LAMMPS_INPUT_FILES = 64, LAMMPS_INPUT_NAME = 256, LAMMPS_INPUT_UNITS = 16 };
 
 struct lammps_input {
     size_t files;
     char file[LAMMPS_INPUT_FILES][LAMMPS_INPUT_NAME]; ///< that it reads, as it names them
+    char units[LAMMPS_INPUT_UNITS];                   ///< as of `units`; made of variables: ""
     bool sets_style, is_hybrid;                       ///< pair_style
     bool has_interactions, has_run; ///< `include mesofit.lmp` and `include mesofit-run.lmp`
     uint64_t digest;                ///< of all text and of the files that it reads

@@ -329,6 +329,7 @@ static void test_lammps_inputs_that_cannot_be(void **state) {
         const char *from, *to, *word;
     } cases[] = {{"include mesofit.lmp", "# include mesofit.lmp", "include mesofit.lmp"},
                  {"fix move all nve", "write_data ff.lmp", "ff.lmp: it is read, and `write_data`"},
+                 {"units lj", "units real", "its units are real where the run file has no"},
                  {"${seed}", "12345", "have the same frames"}};
     lammps_runs_skip_without(NULL);
     write_coarse(*state, "coarse.json");
