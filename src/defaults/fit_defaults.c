@@ -2,6 +2,7 @@
 #include "defaults/fit_defaults.h"
 
 #include "defaults/fit_choice.h"
+#include "defaults/fit_engine.h"
 #include "defaults/fit_unknowns.h"
 #include "inversion/inversions.h"
 
@@ -205,6 +206,12 @@ static void doubt_time_step(struct fit_choice *c, double usual) {
                  mf_fit_choice_text(c, "tau", fit_interval(c, usual), own));
 }
 
+/// Whether nothing moves by the time step and friction of the scene: all is done by a program that
+/// has its own.
+static bool moves_elsewhere(const struct fit_choice *c) {
+    return mf_fit_engine_knows_more(c->fit) && mf_fit_engine_verifies(c->fit);
+}
+
 /// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
 /// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
 /// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
@@ -227,6 +234,8 @@ static void choose_time_step(struct fit_choice *c) {
     }
     c->time_step = fit_interval(c, fmin(free, bound));
     *time_step = mf_fit_choice_number(c, "scene", mf_scene_fields, "time_step", c->time_step);
+    if (moves_elsewhere(c))
+        return;
     char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
     mf_fit_choice_text(c, "tau", c->time_step, step);
     mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
@@ -298,12 +307,14 @@ static enum status choose_friction(struct fit_choice *c) {
     const double cutoff = c->scales.shell, sigma = mf_fit_defaults_sigma(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
     char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
-    mf_fit_choice_note(
-        c,
-        "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "
-        "a bead forgets its velocity in %s",
-        mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
-        mf_fit_choice_text(c, "lambda", cutoff, end), mf_fit_choice_text(c, "tau", time, memory));
+    if (!moves_elsewhere(c))
+        mf_fit_choice_note(
+            c,
+            "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "
+            "a bead forgets its velocity in %s",
+            mf_fit_choice_text(c, "sqrt(mu/tau)", sigma, size),
+            mf_fit_choice_text(c, "lambda", cutoff, end),
+            mf_fit_choice_text(c, "tau", time, memory));
     c->fit->choices.thermostat = true;
     return mf_fit_choice_give_omega(c, "scene.dissipative", sigma, cutoff, &c->fit->scene.omega);
 }

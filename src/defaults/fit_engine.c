@@ -93,6 +93,11 @@ bool mf_fit_engine_knows_more(const struct fit_file *fit) {
     return fit->engine.kind == ENGINE_COMMAND || fit->engine.input[0];
 }
 
+bool mf_fit_engine_verifies(const struct fit_file *fit) {
+    return fit->verification.by == VERIFY_BY_ENGINE ||
+           (fit->verification.by == VERIFY_BY_AUTO && mf_fit_engine_knows_more(fit));
+}
+
 static enum status refuse(const char *file, const char *why) {
     return mf_status_fail(STATUS_BAD_INPUT, "%s: engine: %s", file, why);
 }

@@ -13,6 +13,10 @@ void mf_fit_engine_write(const struct fit_file *fit, struct json_writer *writer)
 /// Whether the engine may know forces that the scene does not: that of a command, or of an input.
 bool mf_fit_engine_knows_more(const struct fit_file *fit);
 
+/// Whether the engine verifies, too: what it may know more of than the scene does, and what the
+/// file says.
+bool mf_fit_engine_verifies(const struct fit_file *fit);
+
 /// Whether the method samples, and the scene can be sampled elsewhere. Fails: BAD_INPUT. Tested:
 /// cli/test_fit_engine.
 enum status mf_fit_engine_check(const struct fit_file *fit, const char *file) MUST_USE;

@@ -87,7 +87,9 @@ static enum status write_script(const struct engine_run *run, const struct engin
     for (size_t k = 0; words[k]; k++)
         length += snprintf(script + length, sizeof script - (size_t)length, " '%s'", words[k]);
     snprintf(script + length, sizeof script - (size_t)length,
-             "\ncode=$?\n[ $code = 0 ] || echo $code >failed\nexit $code\n");
+             " >engine.log 2>&1\ncode=$?\n[ $code = 0 ] && exit 0\necho $code >failed\n"
+             "echo \"$PWD: exit code $code; the end of engine.log:\" >&2\ntail -n 3 engine.log >&2\n"
+             "exit $code\n");
     return mf_engine_write_text(folder, "run.sh", script);
 }
 

@@ -202,11 +202,10 @@ static bool is_tilted(const struct engine_frames *frames) {
 static enum status refuse_tilted(const struct engine_frames *frames) {
     const struct fit_file *fit = frames->run->fit;
     const struct simulation_setup *setup = &fit->scene.setup;
-    const int by = fit->verification.by;
     if (frames->box->dimensions == 2 || mf_molecules_find(setup->interaction, setup->interactions))
         return refuse_box(frames, "it is tilted, which a box of molecules, or of two dimensions, "
                                   "may not be");
-    if (by == VERIFY_BY_ENGINE || (by == VERIFY_BY_AUTO && mf_fit_engine_knows_more(fit)))
+    if (mf_fit_engine_verifies(fit))
         return refuse_box(frames, "it is tilted: what is found in such a box is verified by "
                                   "mesofit, in a rectangular one, if the scene has all forces: "
                                   "\"verification\": {\"by\": \"mesofit\"}");

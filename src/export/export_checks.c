@@ -57,7 +57,17 @@ double mf_export_checks_compressibility(const struct export_job *job) {
 }
 
 double mf_export_checks_usual_pressure(const struct export_job *job) {
+    const struct export_model *model = job->model;
+    if (job->units.system == EXPORT_REDUCED && !model->partial && model->pressure.value > 0)
+        return job->units.pressure * model->pressure.value;
     return job->engine->system == EXPORT_DL_POLY ? 1e-3 : 1;
+}
+
+/// " = 0.0123 +- 0.0004", the error if it is known.
+static void print_with_error(double value, double error, FILE *stream) {
+    fprintf(stream, " = %.3g", value);
+    if (isfinite(error))
+        fprintf(stream, " +- %.2g", error);
 }
 
 static void print_density(const struct export_job *job, double factor, FILE *stream) {
@@ -110,12 +120,13 @@ void mf_export_checks_pressure(const struct export_job *job, const char *command
                     : "");
         return;
     }
-    fprintf(stream,
-            "At another one, P, the density is higher by the share kappa (P - %.5g), kappa = %.3g "
-            "per %s: "
-            "rho k_B T "
-            "kappa = %.3g,\n%s.\n",
-            pressure, kappa, units->pressure_name, model->compressibility.value,
+    fprintf(stream, "At another one, P, the density is higher by the share kappa (P - %.5g), kappa",
+            pressure);
+    print_with_error(kappa, kappa * model->compressibility.error / model->compressibility.value,
+                     stream);
+    fprintf(stream, " per %s:\nrho k_B T kappa", units->pressure_name);
+    print_with_error(model->compressibility.value, model->compressibility.error, stream);
+    fprintf(stream, ", %s.\n",
             model->fit ? "by g(r) up to the range of the target, which is rough"
                        : "by the longest waves of S(q)");
     if (units->system != EXPORT_REDUCED)

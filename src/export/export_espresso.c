@@ -109,7 +109,7 @@ static void print(const struct export_job *job, FILE *stream) {
             "    system.thermostat.set_dpd(kT=kT, seed=1)\n"
             "else:\n"
             "    system.thermostat.set_langevin(kT=kT, gamma=masses[0] / slowing, seed=1)\n\n");
-    mf_export_script_columns(job, true, stream);
+    mf_export_script_columns(job, false, stream);
     fprintf(stream, "for block in range(10):\n"
                     "    system.integrator.run(steps // 10)\n"
                     "    energy = system.analysis.energy()\n"

@@ -107,7 +107,7 @@ static void print(const struct export_job *job, FILE *stream) {
                     "state = hoomd.md.compute.ThermodynamicQuantities(filter=hoomd.filter.All())\n"
                     "simulation.operations.computes.append(state)\n"
                     "simulation.always_compute_pressure = True # else there is none after a run\n");
-    mf_export_script_columns(job, true, stream);
+    mf_export_script_columns(job, false, stream);
     fprintf(stream,
             "for block in range(10):\n"
             "    simulation.run(steps // 10)\n"

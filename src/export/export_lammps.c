@@ -395,10 +395,13 @@ static void explain_columns(const struct export_job *job, FILE *stream) {
 }
 
 static void explain(const struct export_job *job, FILE *stream) {
+    char command[128];
     explain_columns(job, stream);
-    mf_export_checks_pressure(
-        job, "    lmp -in in.mesofit -var pressure 1 -var equilibration 20000 -var steps 50000\n",
-        stream);
+    snprintf(
+        command, sizeof command,
+        "    lmp -in in.mesofit -var pressure %.4g -var equilibration 20000 -var steps 50000\n",
+        mf_export_checks_usual_pressure(job));
+    mf_export_checks_pressure(job, command, stream);
     fprintf(stream, "-var friction langevin%s runs in every LAMMPS: a bath for each particle. %s\n",
             dpd_runs(job) ? "" : ", the default,", mf_export_dynamics_kept(job));
     if (mf_export_is_power(job))

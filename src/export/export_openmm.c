@@ -48,10 +48,46 @@ static void print_terms(FILE *stream) {
         "        system.addForce(force)\n\n");
 }
 
+/// The context, and for how long it will run: a platform without CPU or CUDA takes an hour.
+static void print_context(const struct export_job *job, FILE *stream) {
+    fprintf(stream,
+            "context = openmm.Context(system, integrator)\n"
+            "context.setPositions(start[:, 1:4].tolist())\n"
+            "context.setVelocities(start[:, 4:7].tolist())\n"
+            "settling, trial = %d, 10\n"
+            "integrator.step(trial)\n"
+            "context.getState(getEnergy=True)\n"
+            "began = time.time()\n"
+            "integrator.step(trial)\n"
+            "context.getState(getEnergy=True)\n"
+            "print(\"# platform %%s: %%d steps take about %%.2g min\" %% "
+            "(context.getPlatform().getName(),\n"
+            "      settling + steps, (time.time() - began) / trial * (settling + steps) / 60), "
+            "flush=True)\n",
+            job->model->equilibrated ? 1000 : 5000);
+}
+
+/// OpenMM tells no virial: the pressure is by the energies of a box that is a little larger, and
+/// smaller.
+static void print_pressure(FILE *stream) {
+    fprintf(stream,
+            "def pressure_of(state):\n"
+            "    places = state.getPositions(asNumpy=True)._value\n"
+            "    edges = state.getPeriodicBoxVectors(asNumpy=True)._value\n"
+            "    energy, change = [], 1e-4\n"
+            "    for scale in 1 + change, 1 - change, 1: # the last one as it was\n"
+            "        context.setPeriodicBoxVectors(*(scale * edges))\n"
+            "        context.setPositions(scale * places)\n"
+            "        energy.append(context.getState(getEnergy=True).getPotentialEnergy()._value)\n"
+            "    volume = state.getPeriodicBoxVolume()._value\n"
+            "    return (2 * state.getKineticEnergy()._value / 3\n"
+            "            - (energy[0] - energy[1]) / (6 * change)) / volume * pressure_unit\n\n\n");
+}
+
 /// Frames in extended XYZ, in nm and ps, and lines of energies.
 static void print_run(const struct export_job *job, FILE *stream) {
     fprintf(stream,
-            "integrator.step(%d) # to equilibrate\n\n\n"
+            "integrator.step(settling - 2 * trial)\n\n\n"
             "def write_frame(stream, state, time):\n"
             "    rows = numpy.column_stack((state.getPositions(asNumpy=True)._value,\n"
             "                               state.getVelocities(asNumpy=True)._value))\n"
@@ -61,9 +97,9 @@ static void print_run(const struct export_job *job, FILE *stream) {
             "                 'Properties=name:S:1:pos:R:3:velo:R:3:masses:R:1\\n')\n"
             "    for a, row in zip(types_of, rows):\n"
             "        stream.write(types[a] + \" %%.8g %%.8g %%.8g %%.6g %%.6g %%.6g %%.9g\\n\"\n"
-            "                     %% (*row, masses[a]))\n\n\n",
-            job->model->equilibrated ? 1000 : 5000);
-    mf_export_script_columns(job, false, stream);
+            "                     %% (*row, masses[a]))\n\n\n");
+    print_pressure(stream);
+    mf_export_script_columns(job, true, stream);
     fprintf(stream,
             "frames = open(\"trajectory.xyz\", \"w\")\n"
             "for block in range(100):\n"
@@ -73,7 +109,7 @@ static void print_run(const struct export_job *job, FILE *stream) {
             "    write_frame(frames, state, step * time_step)\n"
             "    print(step, temperature * 2 * state.getKineticEnergy()._value / (3 * len(start) * "
             "kT),\n"
-            "          state.getPotentialEnergy()._value,\n"
+            "          pressure_of(state), state.getPotentialEnergy()._value,\n"
             "          len(start) / state.getPeriodicBoxVolume()._value)\n"
             "frames.close()\n"
             "numpy.savetxt(\"end.txt\", numpy.column_stack((types_of,\n"
@@ -82,7 +118,7 @@ static void print_run(const struct export_job *job, FILE *stream) {
 }
 
 static void print(const struct export_job *job, FILE *stream) {
-    mf_export_script_head(job, "openmm", stream);
+    mf_export_script_head(job, "openmm\nimport time", stream);
     if (job->model->molecules)
         mf_export_terms_head(job, stream);
     fprintf(stream,
@@ -127,10 +163,8 @@ static void print(const struct export_job *job, FILE *stream) {
         "    integrator = openmm.LangevinMiddleIntegrator(temperature, 1 / slowing, "
         "time_step)\n"
         "if len(sys.argv) > 2: # constant pressure\n"
-        "    system.addForce(openmm.MonteCarloBarostat(float(sys.argv[2]), temperature))\n"
-        "context = openmm.Context(system, integrator)\n"
-        "context.setPositions(start[:, 1:4].tolist())\n"
-        "context.setVelocities(start[:, 4:7].tolist())\n");
+        "    system.addForce(openmm.MonteCarloBarostat(float(sys.argv[2]), temperature))\n");
+    print_context(job, stream);
     print_run(job, stream);
 }
 
@@ -148,13 +182,17 @@ static void explain(const struct export_job *job, FILE *stream) {
                              stream);
     mf_export_script_excluded(job, stream);
     fprintf(stream,
-            "\nrun.py lets the start settle for %d steps, and then prints temperature, energy and "
-            "density a hundred times\nand writes as many frames to trajectory.xyz (nm, ps). "
+            "\nrun.py lets the start settle for %d steps, and then prints temperature, pressure, "
+            "energy "
+            "and density a hundred times\nand writes as many frames to trajectory.xyz (nm, ps). "
             "end.txt has the last one in the columns of start.txt:\ncopied over that, it lets a "
             "run at constant volume go on.\n\n",
             job->model->equilibrated ? 1000 : 5000);
     mf_export_checks_rdf(job, "trajectory.xyz", stream);
-    mf_export_checks_pressure(job, "    python3 run.py 100000 1   # steps, pressure\n", stream);
+    char command[64];
+    snprintf(command, sizeof command, "    python3 run.py 100000 %.4g   # steps, pressure\n",
+             mf_export_checks_usual_pressure(job));
+    mf_export_checks_pressure(job, command, stream);
 }
 
 const struct export_engine mf_export_openmm = {

@@ -115,13 +115,11 @@ void mf_export_script_head(const struct export_job *job, const char *module, FIL
                     "start = numpy.loadtxt(\"start.txt\")\n\n");
 }
 
-void mf_export_script_columns(const struct export_job *job, bool pressure, FILE *stream) {
+void mf_export_script_columns(const struct export_job *job, bool density, FILE *stream) {
     const struct export_units *units = &job->units;
-    fprintf(stream, "print(\"# step, temperature [%s]", units->temperature_name);
-    if (pressure)
-        fprintf(stream, ", pressure [%s]", units->pressure_name);
-    fprintf(stream, ", potential energy [%s]", units->energy_name);
-    if (!pressure)
+    fprintf(stream, "print(\"# step, temperature [%s], pressure [%s], potential energy [%s]",
+            units->temperature_name, units->pressure_name, units->energy_name);
+    if (density)
         fprintf(stream, ", density [1/%s^3]", units->length_name);
     fprintf(stream, "\")\n");
 }

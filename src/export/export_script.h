@@ -10,15 +10,15 @@
 /// @param[in] shift  what is taken off positions, as a share of the box
 enum status mf_export_script_files(const struct export_job *job, double shift) MUST_USE;
 
-/// Print the numbers that all scripts begin with: `box`, `kT`, `temperature` and `pressure_unit`,
+/// Print the imports, of `module` last, and the numbers that all scripts begin with: `box`, `kT`, `temperature` and `pressure_unit`,
 /// a pressure of the README over one of the script's units, `time_step`, `types`, `masses`,
 /// `pairs` (types a and b, file, cutoff, and γ and r_c of the friction), `dpd`, whether that
 /// runs, and `slowing`, the time of a bath instead.
 void mf_export_script_head(const struct export_job *job, const char *module, FILE *stream);
 
-/// Print what a line of the script's output has: the temperature and, with `pressure`, the pressure
-/// in the units that the README has, too, and the potential energy of all beads; else the density.
-void mf_export_script_columns(const struct export_job *job, bool pressure, FILE *stream);
+/// Print what a line of the script's output has: temperature, pressure in the units that the README
+/// has, too, the potential energy of all beads and, with `density`, their density.
+void mf_export_script_columns(const struct export_job *job, bool density, FILE *stream);
 
 /// What the README says of the thermostat of such a script.
 void mf_export_script_explain(const struct export_job *job, const char *dpd, FILE *stream);

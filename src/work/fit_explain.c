@@ -111,7 +111,7 @@ static enum status print_simulations(struct fit_file *fit) {
         TRY(print_sampling(fit));
     for (size_t s = 0; s < mf_fit_states_count(fit); s++) {
         const struct fit_file *state = mf_fit_states_at(fit, s);
-        if (mf_fit_engine_knows_more(state)) // it verifies, too
+        if (mf_fit_engine_verifies(state))
             continue;
         struct unknowns unknowns = {0};
         struct unknowns_laws laws = {0};

@@ -39,19 +39,13 @@ static void report_of_state(void *context, const struct inverse_progress *own) {
     sharing->listener->report(sharing->listener->context, &reported);
 }
 
-/// Another engine verifies what it may know more of than the scene does.
-static bool verifies_elsewhere(const struct fit_file *state) {
-    return state->verification.by == VERIFY_BY_ENGINE ||
-           (state->verification.by == VERIFY_BY_AUTO && mf_fit_engine_knows_more(state));
-}
-
 /// The engine advises a shorter "time_step", which here is the verification's own.
 static enum status advise(const struct fit_file *state, const struct verify_step *step,
                           enum status status) {
     const struct units *units = &state->scene.units;
     const double time = mf_units_factor(units, "tau");
     char unit[UNITS_NAME_SIZE], message[STATUS_MESSAGE_SIZE];
-    if (mf_units_convert_message(units, status) != STATUS_UNSTABLE || verifies_elsewhere(state))
+    if (mf_units_convert_message(units, status) != STATUS_UNSTABLE || mf_fit_engine_verifies(state))
         return status;
     snprintf(message, sizeof message, "%s", mf_status_message());
     mf_units_suffix(units, "tau", unit);
@@ -104,7 +98,7 @@ static enum status verify_state(const struct fit_file *state, int round, double 
     struct inverse_problem problem = state->problem;
     double value[INVERSE_MAX_NUMBERS];
     enum status status = STATUS_OK;
-    problem.engine = verifies_elsewhere(state) ? problem.engine : NULL;
+    problem.engine = mf_fit_engine_verifies(state) ? problem.engine : NULL;
     problem.knows_elsewhere = problem.knows_elsewhere && problem.engine;
     for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
         value[n] = number[n].value;

@@ -187,8 +187,8 @@ static bool sample_what_is_listed(void) {
     struct stat found;
     if (stat("out/engine/waiting", &found) != 0 || found.st_size == 0)
         return false;
-    assert_int_equal(system("while read folder; do sh \"$folder/run.sh\" " COMMAND
-                            " >/dev/null 2>&1 || exit 1; done <out/engine/waiting"),
+    assert_int_equal(system("said=$(while read folder; do sh \"$folder/run.sh\" " COMMAND
+                            " 2>&1 || exit 1; done <out/engine/waiting) && [ -z \"$said\" ]"),
                      0);
     return true;
 }
@@ -274,6 +274,17 @@ static void test_wrong_settings_are_refused(void **state) {
     RUN_PROGRAM(&result, "fit", "wrong.json", "--engine", COMMAND, "--explain");
     run_program_assert_code(&result, 2);
     assert_non_null(strstr(result.err, "the run file has no \"engine\""));
+    // Where a program of one's own does all that moves, no friction of ours is told, else it is.
+    for (int own = 0; own < 2; own++) {
+        small_inputs_write(*state, "wrong.json", run,
+                           ", \"dissipative\": {\"law\": \"power\", \"sigma\": 3}", "");
+        if (!own)
+            small_inputs_change(*state, "wrong.json", "\"verification\": {",
+                                "\"verification\": {\"by\": \"mesofit\", ");
+        RUN_PROGRAM(&result, "fit", "wrong.json", "--engine", COMMAND, "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.out, "chosen: friction") == NULL, own);
+    }
     refuse(*state, ", \"frames\": \"frames.extxyz\"", "", COMMAND, "engine.frames: missing");
     refuse(*state, "\"steps\": 20", "\"input\": \"in.lmp\"", COMMAND, "engine.input");
     refuse(*state, "\"name\": \"auto\", " PLAN, "\"name\": \"cma-es\"", COMMAND,
