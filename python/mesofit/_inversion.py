@@ -85,7 +85,7 @@ class Piece:
         Raises
         ------
         InputError
-            The array has another shape, or fewer frames than were asked for.
+            The array has another shape, fewer frames than were asked for, or another unit.
         """
         box = np.array(self.asked["box"], dtype=float)
         places = np.asarray(positions, dtype=float)
@@ -100,6 +100,8 @@ class Piece:
             raise InputError(f"expected {wanted} numbers, one of each frame")
         edges = np.broadcast_to(box if boxes is None else np.asarray(boxes, dtype=float),
                                 (len(places), len(box)))
+        names = self._names(places.shape[1])
+        self._check_unit(places[0] / edges[0])
         (self.folder / "sample.json").write_text(json.dumps(numbers))
         with (self.folder / "partial").open("w") as out:
             for frame, edge in zip(places[:wanted], edges):
@@ -108,8 +110,15 @@ class Piece:
                 out.write(f'{len(frame)}\nLattice="{" ".join("%.12g" % x for x in lattice)}" '
                           f'Properties=species:S:1:pos:R:3 {self._units}\n')
                 out.writelines("%s %.10g %.10g %.10g\n" % (name, *place)
-                               for name, place in zip(self._names(len(frame)), frame))
+                               for name, place in zip(names, frame))
         (self.folder / "partial").rename(self.folder / self.asked["trajectory"])  # whole or not at all
+
+    def _check_unit(self, places: Array) -> None:
+        """Places of a frame in the edges of its box, which beads fill; as of frames that are read."""
+        spread = np.sqrt(12 * np.var(places, axis=0))
+        if len(places) > 1 and (spread.max() < 0.3 or (self.before is None and spread.min() > 4)):
+            raise InputError(f"positions: the beads are spread over {spread.max():.2g} of the box along "
+                             f"each axis: look at the unit of their positions, that of the run file")
 
     def _names(self, beads: int) -> list[str]:
         types = self.asked["beads"]

@@ -10,10 +10,10 @@
 /// @param[in] shift  what is taken off positions, as a share of the box
 enum status mf_export_script_files(const struct export_job *job, double shift) MUST_USE;
 
-/// Print the imports, of `module` last, and the numbers that all scripts begin with: `box`, `kT`, `temperature` and `pressure_unit`,
-/// a pressure of the README over one of the script's units, `time_step`, `types`, `masses`,
-/// `pairs` (types a and b, file, cutoff, and γ and r_c of the friction), `dpd`, whether that
-/// runs, and `slowing`, the time of a bath instead.
+/// Print the imports, of `module` last, and the numbers that all scripts begin with: `box`, `kT`,
+/// `temperature` and `pressure_unit`, a pressure of the README over one of the script's units,
+/// `time_step`, `types`, `masses`, `pairs` (types a and b, file, cutoff, and γ and r_c of the
+/// friction), `dpd`, whether that runs, and `slowing`, the time of a bath instead.
 void mf_export_script_head(const struct export_job *job, const char *module, FILE *stream);
 
 /// Print what a line of the script's output has: temperature, pressure in the units that the README

@@ -303,10 +303,12 @@ static size_t spans(void *own, struct memory_span *spans) {
 
 bool mf_many_body_was_beyond(const struct many_body *many_body, const void *own, int term,
                              double extreme[2]) {
+    static const double rounding = 1e-9;
     const struct density_energy *energy = &many_body->term[term].energy;
+    const double within = rounding * (energy->high - energy->low);
     memcpy(extreme, ((const struct many_body_work *)own)->extreme[term], 2 * sizeof *extreme);
     return energy->tabulated && extreme[0] <= extreme[1] &&
-           (extreme[0] < energy->low || extreme[1] > energy->high);
+           (extreme[0] < energy->low - within || extreme[1] > energy->high + within);
 }
 
 const struct interaction mf_many_body = {

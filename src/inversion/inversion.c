@@ -74,13 +74,14 @@ static void describe_samples(const struct inversion *inversion, const double *ow
     const double particles = (double)mf_composition_particles(&first->composition);
     const struct replicas_mean energy =
         mf_replicas_mean(&first->replicas, SAMPLER_ENERGY, first->inefficiency);
+    const bool told = mf_inversion_bulk_knows_pressure(first);
     const double columns[INVERSION_SHARED_COLUMNS] = {inversion->course.progress.damping *
                                                           inversion->course.progress.chosen_damping,
                                                       assessment->own_noise,
                                                       assessment->disagreement,
                                                       assessment->distance[TARGET_RDF].rms,
-                                                      first->bulk.pressure,
-                                                      first->bulk.pressure_error,
+                                                      told ? first->bulk.pressure : NAN,
+                                                      told ? first->bulk.pressure_error : NAN,
                                                       mf_replicas_acceptance(&first->replicas),
                                                       energy.mean / particles,
                                                       energy.error / particles,

@@ -52,6 +52,12 @@ static void measure_pressure(struct inversion_state *state) {
     state->bulk.pressure_error = virial.error / unit;
 }
 
+bool mf_inversion_bulk_knows_pressure(const struct inversion_state *state) {
+    const struct replicas_mean virial =
+        mf_replicas_mean(&state->replicas, SAMPLER_VIRIAL, state->inefficiency);
+    return !state->problem->knows_elsewhere || virial.mean != 0 || virial.error > 0;
+}
+
 enum status mf_inversion_bulk_check(const struct inversion_state *state) {
     static const double rounding = 1e-9;
     if (mf_inversion_bulk_kind(state) != TARGET_DENSITY ||

@@ -33,6 +33,10 @@ enum status mf_inversion_bulk_check(const struct inversion_state *state) MUST_US
 /// more: few chains may agree by chance.
 void mf_inversion_bulk_measure(struct inversion_state *state);
 
+/// Whether the samples have a pressure: an engine that knows more than we, and tells none, leaves
+/// 0.
+bool mf_inversion_bulk_knows_pressure(const struct inversion_state *state);
+
 /// How far from that of equilibrium it may be, see mf_inversion_equilibrium_shift.
 double mf_inversion_bulk_shift(const struct inversion_state *state);
 

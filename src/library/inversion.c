@@ -5,6 +5,7 @@
 #include "mesofit/inversion.h"
 
 #include "base/memory.h"
+#include "base/statistics.h"
 #include "io/json.h"
 #include "io/json_write.h"
 #include "io/output.h"
@@ -231,6 +232,30 @@ static enum status check_numbers(const char *name, const double *values, size_t 
     return STATUS_OK;
 }
 
+/// As of frames that are read (engines/engine_frames.c): beads that fill their box have places with
+/// a standard deviation of 1/sqrt(12) of it. Those of a beginning have not gone far.
+static enum status check_unit(const struct mesofit_piece *piece,
+                              const struct mesofit_samples *samples) {
+    static const double least = 0.3, most = 4;
+    const double *box = samples->boxes ? samples->boxes : piece->box;
+    double narrowest = INFINITY, widest = 0;
+    for (int d = 0; d < piece->dimensions; d++) {
+        struct running_mean places = {0};
+        for (size_t bead = 0; bead < piece->beads; bead++)
+            mf_statistics_add(
+                &places, samples->positions[bead * (size_t)piece->dimensions + (size_t)d] / box[d]);
+        const double spread = sqrt(12 * places.squares / places.count);
+        narrowest = fmin(narrowest, spread);
+        widest = fmax(widest, spread);
+    }
+    if (piece->beads < 2 || (widest >= least && (piece->before || narrowest <= most)))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "positions: the beads are spread over %.2g of the box along each axis: "
+                          "look at the unit of their positions, that of the run file",
+                          widest < least ? widest : narrowest);
+}
+
 static enum status check_samples(const struct mesofit_piece *piece,
                                  const struct mesofit_samples *samples) {
     const size_t frames = (size_t)piece->frames, dimensions = (size_t)piece->dimensions;
@@ -240,7 +265,8 @@ static enum status check_samples(const struct mesofit_piece *piece,
     TRY(check_numbers("boxes", samples->boxes, frames * dimensions));
     TRY(check_numbers("pressure", samples->pressure, frames));
     TRY(check_numbers("temperature", samples->temperature, frames));
-    return check_numbers("pair_energy", samples->pair_energy, frames);
+    TRY(check_numbers("pair_energy", samples->pair_energy, frames));
+    return check_unit(piece, samples);
 }
 
 static void print_frame(const struct mesofit_inversion *inversion, const struct piece *piece,

@@ -171,10 +171,7 @@ static enum status prepare(struct run *run, const char *file, const struct run_o
         &(struct watcher_run){RUN_FIT, run->folder.path, .units = &run->fit.scene.units,
                               .unknowns = &run->unknowns, .targets = &run->fit.problem.targets,
                               .damping = find_damping(run)});
-    const struct sampling_engine *engine = run->fit.problem.engine;
-    if (options->resume && engine && engine->announce) // one of many rounds
-        return STATUS_OK;
-    return mf_fit_print_targets(&run->progress, &run->fit);
+    return mf_fit_engine_print_targets(&run->progress, &run->fit, options->resume);
 }
 
 static void save_now_and_then(struct run *run) {

@@ -2,6 +2,7 @@
 #include "work/fit_engine.h"
 
 #include "base/interrupt.h"
+#include "work/fit_print.h"
 
 enum status mf_fit_engine_expect(const struct fit_file *fit, const struct engine_door *door) {
     if (fit->engine.kind == ENGINE_NONE && door && door->command)
@@ -30,6 +31,12 @@ bool mf_fit_engine_waits(const struct fit_file *fit, const struct engine_door *d
     mf_interrupt_plan();
     (void)mf_status_fail(STATUS_INTERRUPTED, "%s", text);
     return true;
+}
+
+enum status mf_fit_engine_print_targets(struct progress *to, const struct fit_file *fit,
+                                        bool resume) {
+    const struct sampling_engine *engine = fit->problem.engine;
+    return resume && engine && engine->announce ? STATUS_OK : mf_fit_print_targets(to, fit);
 }
 
 void mf_fit_engine_close(struct fit_file *fit, const struct engine_door *door) {

@@ -159,6 +159,15 @@ static void test_samples_of_the_caller_find_a_known_potential(void **state) {
     const struct mesofit_samples none = {.positions = NULL};
     assert_int_equal(mesofit_inversion_tell(inversion, 0, &none), MESOFIT_BAD_INPUT);
     assert_int_equal(mesofit_inversion_tell(inversion, 4, &none), MESOFIT_BAD_INPUT);
+    const size_t numbers = (size_t)mesofit_inversion_piece(inversion, 0)->frames * BEADS * 3;
+    double *wrong = calloc(numbers, sizeof *wrong);
+    assert_non_null(wrong);
+    for (size_t k = 0; k < numbers; k++) // as of metres
+        wrong[k] = 1e-9 * (double)(k % 97) / 97 * edge;
+    const struct mesofit_samples other_unit = {.positions = wrong};
+    assert_int_equal(mesofit_inversion_tell(inversion, 0, &other_unit), MESOFIT_BAD_INPUT);
+    assert_non_null(strstr(mesofit_message(), "look at the unit of their positions"));
+    free(wrong);
     sample(inversion, 0);
     mesofit_inversion_free(inversion); // what was told stays
     inversion = mesofit_inversion_open(run, out, 1);
