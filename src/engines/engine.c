@@ -6,6 +6,7 @@
 #include "engines/engine_folder.h"
 #include "report/program.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -86,10 +87,11 @@ static enum status write_script(const struct engine_run *run, const struct engin
                           "cd \"$(dirname \"$0\")\" || exit 1\nrm -f failed\n\"$@\"");
     for (size_t k = 0; words[k]; k++)
         length += snprintf(script + length, sizeof script - (size_t)length, " '%s'", words[k]);
-    snprintf(script + length, sizeof script - (size_t)length,
-             " >engine.log 2>&1\ncode=$?\n[ $code = 0 ] && exit 0\necho $code >failed\n"
-             "echo \"$PWD: exit code $code; the end of engine.log:\" >&2\ntail -n 3 engine.log >&2\n"
-             "exit $code\n");
+    snprintf(
+        script + length, sizeof script - (size_t)length,
+        " >engine.log 2>&1\ncode=$?\n[ $code = 0 ] && exit 0\necho $code >failed\n"
+        "echo \"$PWD: exit code $code; the end of engine.log:\" >&2\ntail -n 3 engine.log >&2\n"
+        "exit $code\n");
     return mf_engine_write_text(folder, "run.sh", script);
 }
 
@@ -223,6 +225,29 @@ static enum status begin(void *context, const struct engine_piece *asked, void *
     return mf_engine_folder_remove(old);
 }
 
+/// A Slurm job in which the whole fit goes on, and which hands over to the next one.
+static void print_job(const void *fit, FILE *stream) {
+    OWNED char *folder = realpath(fit, NULL);
+    fprintf(
+        stream,
+        "#!/bin/sh\n#SBATCH --ntasks=64 --time=24:00:00 --signal=B:USR1@300\n"
+        "# sbatch slurm.sh RUN.json COMMAND: the fit goes on, COMMAND as of --engine, \"srun "
+        "lmp\"\n"
+        "run=$1 command=$2 out='%s'\n"
+        "mesofit fit \"$run\" -o \"$out\" --engine \"$command\" --threads 1 --resume &\nfit=$!\n"
+        "trap 'kill -USR1 $fit' USR1 # of Slurm, before the time is over\n"
+        "wait $fit\ncode=$?\nwait $fit && code=0 # if it was the signal that ended the first\n"
+        "if grep -q '\"interrupted\"' \"$out/summary.json\" 2>/dev/null; then\n"
+        "    sbatch \"$out/engine/slurm.sh\" \"$run\" \"$command\"\nfi\nexit $code\n",
+        folder ? folder : (const char *)fit);
+}
+
+static enum status write_job(const char *fit) {
+    char folder[OUTPUT_PATH_SIZE];
+    mf_engine_path(fit, "engine", folder);
+    return mf_engine_write(folder, "slurm.sh", print_job, fit);
+}
+
 static enum status open_engine(const char *command, const struct fit_file *fit, const char *folder,
                                bool resume, const struct sampling_engine **engine) {
     TRY(mf_engine_folder_begin(folder, resume));
@@ -247,7 +272,10 @@ static enum status open_engine(const char *command, const struct fit_file *fit, 
                                  .next = mf_engine_frames_next,
                                  .end = mf_engine_frames_close};
     *engine = &run->engine;
-    return run->later ? mf_engine_wait(run, NULL) : STATUS_OK;
+    if (!run->later)
+        return STATUS_OK;
+    TRY(write_job(folder));
+    return mf_engine_wait(run, NULL);
 }
 
 static bool waits(const struct sampling_engine *engine, char *text, size_t size) {

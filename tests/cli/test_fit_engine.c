@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #define SETUP                                                                                      \
@@ -205,6 +206,18 @@ static void test_samples_made_later_give_the_same_bits(void **state) {
     for (; sample_what_is_listed(); rounds++)
         RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later", "--resume");
     assert_in_range(rounds, 3, 20); // two iterations and the verification
+    results_assert_same("whole", "out", same);
+}
+
+/// The job of Slurm, run by a shell: the pieces that were asked for are made by the command.
+static void test_a_job_goes_on_with_the_same_bits(void **state) {
+    static const char *const same[] = {"potential.tsv", "rdf.tsv", NULL};
+    write_coarse(*state, "coarse.json");
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "whole", "--engine", COMMAND);
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later");
+    const int code = system("PATH=\"$(dirname \"$MESOFIT\"):$PATH\" sh out/engine/slurm.sh "
+                            "coarse.json '" COMMAND "' >said 2>&1");
+    assert_in_range(WEXITSTATUS(code), 0, 1);
     results_assert_same("whole", "out", same);
 }
 
@@ -451,6 +464,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_a_written_input_has_the_known_part, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_samples_made_later_give_the_same_bits, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_a_job_goes_on_with_the_same_bits, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_broken_samples_are_waited_for_again, enter,
                                         small_inputs_leave),
