@@ -9,10 +9,8 @@ static const struct command_option options[] = {
     [ENGINE] = {"--engine", "lammps|hoomd|espresso|openmm|gromacs|dl_poly|votca",
                 "program for the result"},
     [BANDS] = {"--bands", NULL, "also the potential minus and plus one standard error"},
-    [DYNAMICS] = {"--dynamics", NULL,
-                  "simulate what D and E(t, r_0) are with the friction that runs there"},
-    [PROJECT] = {"--project", NULL,
-                 "the nearest friction that the engine has; the deviation is simulated"},
+    [DYNAMICS] = {"--dynamics", NULL, "simulate D and E(t, r_0) there"},
+    [PROJECT] = {"--project", NULL, "the engine's nearest friction; the deviation is simulated"},
     [TO] = {"-o", "DIR", "folder for its files (default: the engine's name, here)"},
     {NULL, NULL, NULL},
 };

@@ -14,10 +14,10 @@ const struct field mf_sampling_engine_fields[] = {
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "tau", .help = "of a written input; 0: the scene's"},
     {"steps", FIELD_INTEGER, MEMBER(steps), .initial = 10, .minimum = 1, .maximum = 1e9,
-     .unit = "steps", .help = "time steps that count as a sweep of \"method\""},
+     .unit = "steps", .help = "time steps of a sweep"},
     {"at_once", FIELD_INTEGER, MEMBER(at_once), .initial = 0, .minimum = 0, .maximum = 1024,
      .unit = "", .help = "replicas side by side; 0: as --threads"},
     {"keep", FIELD_INTEGER, MEMBER(keep), .initial = 2, .minimum = 1, .maximum = 1e9, .unit = "",
-     .help = "pieces of each replica whose files stay"},
+     .help = "pieces of a replica that stay"},
     FIELD_END,
 };
