@@ -20,6 +20,7 @@ enum {
     PROFILE,
     PROFILE_BINS,
     WEIGHTED,
+    FORCES,
     WINDOW,
     ESCAPE,
     VELOCITIES,
@@ -51,6 +52,8 @@ static const struct command_option options[] = {
     [WEIGHTED] =
         {"--weighted-density", "R0,RC[,END]",
          "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]; 200 bins to END"},
+    [FORCES] = {"--forces", "R",
+                "the forces of the frames, for \"force-matching\" of pairs up to R [nm]"},
     [WINDOW] = {"--window", "T",
                 "window of MSD, VACF, escape times [ps]; else a tenth, at most 100 frames"},
     [ESCAPE] = {"--escape", "R",
@@ -164,6 +167,8 @@ static enum status read_request(const struct command_line *line, struct measure_
     TRY(read_number(line, TEMPERATURE, above_zero, &request->temperature));
     TRY(read_number(line, FILE_TIME_STEP, above_zero, &frames->options.time_step));
     TRY(read_number(line, Q_RANGE, 0, &request->measured.waves.q_maximum));
+    TRY(read_number(line, FORCES, above_zero, &request->measured.force_cutoff));
+    frames->options.forces = line->own[FORCES] != NULL;
     TRY(read_count(line, BINS, &request->measured.bins));
     TRY(read_weighted(line, &request->measured.weighted));
     TRY(read_count(line, WAVES, &request->measured.waves.waves));

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/parallel.h"
+#include "measure/measured_forces.h"
 
 #include <math.h>
 #include <string.h>
@@ -235,6 +236,7 @@ static void clear_slots(struct measured *measured) {
         for (int d = 0; d < 3; d++)
             mf_memory_free(slot->place[d]);
         mf_frame_pairs_clear(&slot->pairs);
+        mf_frame_forces_clear(&slot->forces);
         mf_memory_free(slot->weighted);
     }
     mf_memory_free(measured->slot);
@@ -254,6 +256,7 @@ void mf_measured_clear(struct measured *measured) {
     mf_measured_motion_clear(&measured->motion);
     mf_frame_features_clear(&measured->features);
     mf_sample_series_clear(&measured->volume);
+    mf_frame_forces_end(&measured->forces);
     *measured = (struct measured){0};
 }
 
@@ -312,6 +315,7 @@ static enum status look_at(void *context, size_t task, void *result) {
                                  "the range of g(r)"));
     TRY(mf_frame_box_places(&slot->box, &slot->beads, slot->place));
     TRY(find_weighted(measured, slot));
+    TRY(mf_measured_forces_look(measured, slot));
     return find_pairs(measured, slot);
 }
 
@@ -349,6 +353,7 @@ static enum status add_one(struct measured *measured, const struct measured_slot
         TRY(mf_weighted_density_add(&measured->weighted, slot->weighted, measured->mapping->beads));
     TRY(mf_frame_features_add(&measured->features, &measured->pairs, &slot->pairs,
                               slot->box.volume));
+    mf_measured_forces_add(measured, slot);
     TRY(mf_measured_motion_add(&measured->motion, &slot->beads, &measured->configuration));
     return mf_sample_series_add(&measured->volume, &slot->box.volume);
 }
@@ -388,6 +393,7 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
         TRY(begin_motion(measured, frames));
     if (measured->frames == 0 && measured->molecules.molecules)
         TRY(begin_molecules(measured, frames, count));
+    TRY(mf_measured_forces_begin(measured, frames, count));
     TRY(mf_parallel_try(&tasks));
     for (size_t k = 0; k < count; k++)
         TRY(add_one(measured, &measured->slot[k]));
@@ -400,50 +406,4 @@ void mf_measured_end(struct measured *measured) {
         for (int order = 0; order < BONDED_KINDS; order++)
             if (use->observable == mf_bonded_distribution_of(order))
                 mf_bonded_distribution_join(use->state);
-}
-
-enum status mf_measured_moments(const struct measured *measured, int order, int group,
-                                struct bonded_moments *moments) {
-    const void *const state = mf_measured_state(measured, mf_bonded_distribution_of(order));
-    struct bonded_bins bins;
-    OWNED double *counts = mf_bonded_distribution_counts(state, group, &bins);
-    if (counts == NULL)
-        return STATUS_NO_MEMORY;
-    *moments = mf_bonded_distribution_moments(&bins, counts);
-    return STATUS_OK;
-}
-
-const void *mf_measured_state(const struct measured *measured,
-                              const struct observable *observable) {
-    const struct observable_use *use = measured->use;
-    while (use->observable && use->observable != observable)
-        use++;
-    return use->state;
-}
-
-const struct rdf *mf_measured_rdf(const struct measured *measured) {
-    const struct rdf_observed *const observed = mf_measured_state(measured, &mf_rdf_observable);
-    return &observed->counted;
-}
-
-double mf_measured_mean(const struct sample_series *series, double *error) {
-    struct running_mean mean = {0};
-    for (size_t k = 0; k < series->count; k++)
-        mf_statistics_add(&mean, series->values[k]);
-    if (error)
-        *error = series->count < 2
-                     ? NAN
-                     : mf_statistics_correlated_error(series->values, series->count, 1);
-    return series->count > 0 ? mean.mean : NAN;
-}
-
-struct box mf_measured_box(const struct measured *measured) {
-    return mf_box_cube(mf_measured_mean(&measured->volume, NULL));
-}
-
-struct units mf_measured_units(int system) {
-    return (struct units){.length = 1,
-                          .temperature = 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO),
-                          .mass = UNITS_ATOMIC_MASS,
-                          .system = system};
 }

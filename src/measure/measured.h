@@ -7,6 +7,7 @@
 #pragma once
 
 #include "measure/frame_features.h"
+#include "measure/frame_forces.h"
 #include "measure/frame_pairs.h"
 #include "measure/measured_molecules.h"
 #include "measure/measured_motion.h"
@@ -25,6 +26,7 @@ struct measured_plan {
                                             ///< 0 bins, waves: 100, 10
     struct density_profile_settings profile;   ///< 0 bins: it is not measured
     struct weighted_density_settings weighted; ///< without a cutoff it is not measured
+    double force_cutoff; ///< of pairs whose forces are matched [nm]; 0: forces are not looked at
     struct measured_motion_plan motion;
     struct measured_molecules_plan molecules; ///< all zero: nobody tells of them
     int threads;
@@ -45,6 +47,7 @@ struct measured {
         struct box_vectors box;
         int32_t *place[3]; ///< shape [beads]
         struct frame_pairs pairs;
+        struct frame_forces forces;
         double *weighted; ///< shape [beads]
     } * slot;             ///< one for each frame of a batch
     size_t slots;
@@ -57,7 +60,8 @@ struct measured {
     struct observable_use use[MEASURED_MAX + 1];
     struct weighted_density weighted;
     struct measured_motion motion;
-    struct frame_features features; ///< by which it is seen where equilibrium begins
+    struct frame_forces_plan forces; ///< of frames that have them
+    struct frame_features features;  ///< by which it is seen where equilibrium begins
     size_t frames;
     struct sample_series volume; ///< [nm³]
 };

@@ -36,16 +36,23 @@ struct cell_pairs_batch {
 };
 enum { CELL_PAIRS_BATCH = 512 };
 
-/// The squared distance to one of them [length²]: for loops with vectors.
-static inline __attribute__((always_inline)) double
-cell_pairs_square(const struct cell_pairs_batch *batch, size_t k) {
+/// The way from the bead to one of them [length].
+static inline __attribute__((always_inline)) void
+cell_pairs_vector(const struct cell_pairs_batch *batch, size_t k, double way[3]) {
     const double a = box_fraction_difference(batch->place[0][k], batch->own[0]);
     const double b = box_fraction_difference(batch->place[1][k], batch->own[1]);
     const double c = box_fraction_difference(batch->place[2][k], batch->own[2]);
-    const double x = a * batch->edge[0][0] + b * batch->edge[1][0] + c * batch->edge[2][0];
-    const double y = b * batch->edge[1][1] + c * batch->edge[2][1];
-    const double z = c * batch->edge[2][2];
-    return x * x + y * y + z * z;
+    way[0] = a * batch->edge[0][0] + b * batch->edge[1][0] + c * batch->edge[2][0];
+    way[1] = b * batch->edge[1][1] + c * batch->edge[2][1];
+    way[2] = c * batch->edge[2][2];
+}
+
+/// The squared distance to one of them [length²]: for loops with vectors.
+static inline __attribute__((always_inline)) double
+cell_pairs_square(const struct cell_pairs_batch *batch, size_t k) {
+    double way[3];
+    cell_pairs_vector(batch, k, way);
+    return way[0] * way[0] + way[1] * way[1] + way[2] * way[2];
 }
 
 /// All of them. @param[out] squares  shape [count], at most CELL_PAIRS_BATCH

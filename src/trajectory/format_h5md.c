@@ -2,8 +2,8 @@
 //
 // H5MD 1.1 (P. de Buyl, P. H. Colberg and F. Höfling, Comput. Phys. Commun. 185, 1546 (2014);
 // https://h5md.nongnu.org): particles of one group, by the HDF5 library, frame by frame. Positions,
-// velocities, images, ids and the box's edges may change in time; masses and species are those of
-// the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
+// velocities, forces, images, ids and the box's edges may change in time; masses and species are
+// those of the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
 #include "base/memory.h"
 #include "trajectory/h5md_canary.h"
 #include "trajectory/h5md_file.h"
@@ -17,7 +17,7 @@
 struct header {
     double step, time; ///< [ps]
     double box[3][3];  ///< [nm]; 0: none
-    bool has_velocities, has_images, has_ids;
+    bool has_velocities, has_images, has_forces, has_ids;
 };
 
 static bool recognise(const unsigned char *begin, size_t size) {
@@ -114,6 +114,8 @@ static enum status fetch_numbers(struct trajectory *trajectory, struct trajector
     TRY(take_if(frame, &h5md->velocity, header.step, at, H5T_NATIVE_DOUBLE,
                 &header.has_velocities));
     TRY(take_if(frame, &h5md->image, header.step, at, H5T_NATIVE_DOUBLE, &header.has_images));
+    if (trajectory->forces)
+        TRY(take_if(frame, &h5md->force, header.step, at, H5T_NATIVE_DOUBLE, &header.has_forces));
     TRY(take_if(frame, &h5md->id, header.step, at, H5T_NATIVE_INT64, &header.has_ids));
     if (h5md->id.there && !header.has_ids) // then it is unknown which particle is which
         return fail_of_step(&h5md->id, header.step, at, "");
@@ -259,9 +261,11 @@ static enum status add(const struct trajectory_frame *frame, size_t *at, const d
 static enum status decode_vectors(const struct trajectory *trajectory,
                                   struct trajectory_frame *frame, const struct header *header,
                                   const size_t *place) {
-    const double x = trajectory->scale.length, v = trajectory->scale.speed;
+    const double x = trajectory->scale.length, v = trajectory->scale.speed,
+                 f = trajectory->scale.force;
     const double lengths[3][3] = {{x, 0, 0}, {0, x, 0}, {0, 0, x}},
-                 speeds[3][3] = {{v, 0, 0}, {0, v, 0}, {0, 0, v}};
+                 speeds[3][3] = {{v, 0, 0}, {0, v, 0}, {0, 0, v}},
+                 forces[3][3] = {{f, 0, 0}, {0, f, 0}, {0, 0, f}};
     size_t at = sizeof *header;
     memset(frame->position, 0, frame->atoms * sizeof *frame->position);
     TRY(add(frame, &at, lengths, place, frame->position));
@@ -269,7 +273,13 @@ static enum status decode_vectors(const struct trajectory *trajectory,
         memset(frame->velocity, 0, frame->atoms * sizeof *frame->velocity);
         TRY(add(frame, &at, speeds, place, frame->velocity));
     }
-    return header->has_images ? add(frame, &at, header->box, place, frame->position) : STATUS_OK;
+    if (header->has_images)
+        TRY(add(frame, &at, header->box, place, frame->position));
+    if (!header->has_forces)
+        return STATUS_OK;
+    TRY(mf_frame_reserve_forces(frame));
+    memset(frame->force, 0, frame->atoms * sizeof *frame->force);
+    return add(frame, &at, forces, place, frame->force);
 }
 
 static enum status decode(const struct trajectory *trajectory, struct trajectory_frame *frame) {
@@ -296,8 +306,8 @@ static const char *const extensions[] = {"h5md", "h5", "hdf5", NULL};
 const struct trajectory_format mf_format_h5md = {
     .name = "h5md",
     .extensions = extensions,
-    .summary =
-        "H5MD 1.1: positions, velocities, images, ids, box; masses, species, GROMACS's topology",
+    .summary = "H5MD 1.1: positions, velocities, forces, images, ids, box; masses, species, "
+               "GROMACS's topology",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .state_size = sizeof(struct state),
     .recognise = recognise,

@@ -175,6 +175,23 @@ static void scale_vector(double vector[3], double factor) {
         vector[d] *= factor;
 }
 
+/// What atoms may have beside their positions.
+static enum status read_more(const struct trajectory *trajectory, struct trajectory_frame *frame,
+                             const struct lammps_dump *dump, const struct word *word,
+                             const char *line, size_t atom) {
+    if (frame->has_velocities) {
+        if (!read_vector(dump, word, LAMMPS_VX, frame->velocity[atom]))
+            return mf_frame_fail_line(frame, line, "a velocity is not a finite number");
+        scale_vector(frame->velocity[atom], trajectory->scale.speed);
+    }
+    if (frame->has_forces) {
+        if (!read_vector(dump, word, LAMMPS_FX, frame->force[atom]))
+            return mf_frame_fail_line(frame, line, "a force is not a finite number");
+        scale_vector(frame->force[atom], trajectory->scale.force);
+    }
+    return STATUS_OK;
+}
+
 static enum status read_atoms(const struct trajectory *trajectory, struct trajectory_frame *frame,
                               const struct lammps_dump *dump) {
     struct word word[LAMMPS_MAX_COLUMNS];
@@ -190,11 +207,7 @@ static enum status read_atoms(const struct trajectory *trajectory, struct trajec
         if (!read_position(dump, word, from, position))
             return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
         scale_vector(position, trajectory->scale.length);
-        if (!frame->has_velocities)
-            continue;
-        if (!read_vector(dump, word, LAMMPS_VX, frame->velocity[atom]))
-            return mf_frame_fail_line(frame, line, "a velocity is not a finite number");
-        scale_vector(frame->velocity[atom], trajectory->scale.speed);
+        TRY(read_more(trajectory, frame, dump, word, line, atom));
     }
     return STATUS_OK;
 }
@@ -211,6 +224,8 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     for (int d = 0; d < 3; d++)
         frame->periodic[d] = frame->has_box && dump.periodic[d];
     TRY(mf_frame_reserve(frame, dump.atoms, has_vector(&dump, LAMMPS_VX)));
+    if (trajectory->forces && has_vector(&dump, LAMMPS_FX))
+        TRY(mf_frame_reserve_forces(frame));
     TRY(mf_trajectory_begin_atoms(trajectory, frame));
     return read_atoms(trajectory, frame, &dump);
 }
@@ -277,7 +292,7 @@ const struct trajectory_format mf_format_lammps_dump = {
     .name = "lammps-dump",
     .extensions = extensions,
     .summary =
-        "LAMMPS, dump in text, atom or custom: any columns, x xs xu xsu, ix, vx, id type mol "
+        "LAMMPS, dump in text, atom or custom: any columns, x xs xu xsu, ix, vx, fx, id type mol "
         "element typelabel mass",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
@@ -310,7 +325,7 @@ static void print_snapshot_heading(const struct snapshot *snapshot, FILE *stream
         fprintf(stream, "0 %.10g\n", box->length[d]);
     if (box->dimensions == 2) // as LAMMPS has two
         fprintf(stream, "-0.5 0.5\n");
-    fprintf(stream, "ITEM: ATOMS id%s type element typelabel%s x y z ix iy iz vx vy vz\n",
+    fprintf(stream, "ITEM: ATOMS id%s type element typelabel%s x y z ix iy iz vx vy vz fx fy fz\n",
             mf_snapshot_find(snapshot, "molecule") ? " mol" : "",
             mf_snapshot_has_masses(snapshot) ? " mass" : "");
 }
@@ -319,6 +334,7 @@ static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
     const struct snapshot_column *position = mf_snapshot_find(snapshot, "position"),
                                  *image = mf_snapshot_find(snapshot, "image"),
                                  *velocity = mf_snapshot_find(snapshot, "velocity"),
+                                 *force = mf_snapshot_find(snapshot, "force"),
                                  *molecule = mf_snapshot_find(snapshot, "molecule");
     print_snapshot_heading(snapshot, stream);
     for (size_t k = 0; k < snapshot->count; k++) {
@@ -333,6 +349,7 @@ static void print_snapshot(const struct snapshot *snapshot, FILE *stream) {
         print_vector(snapshot, position, k, stream);
         print_vector(snapshot, image, k, stream);
         print_vector(snapshot, velocity, k, stream);
+        print_vector(snapshot, force, k, stream);
         fprintf(stream, "\n");
     }
 }

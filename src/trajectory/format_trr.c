@@ -10,7 +10,7 @@
 enum { MAGIC = 1993, TITLE = 24, HEADER = TITLE + 13 * 4, PARTS = 10 };
 
 /// The parts of a frame in the order in which they follow; all but these four are passed over.
-enum { BOX = 2, POSITIONS = 7, VELOCITIES = 8 };
+enum { BOX = 2, POSITIONS = 7, VELOCITIES = 8, FORCES = 9 };
 
 /// The header with numbers after the title: sizes of the parts, atoms, step, and one that nobody
 /// uses; time and λ, of the precision of the rest, follow.
@@ -28,7 +28,7 @@ static bool recognise(const unsigned char *begin, size_t size) {
 /// Bytes of a number, from the part that is there: 0 if none says it, or says it wrongly.
 static size_t find_precision(const struct header *header) {
     const int64_t atoms = header->atoms;
-    static const int vectors[] = {POSITIONS, VELOCITIES, VELOCITIES + 1};
+    static const int vectors[] = {POSITIONS, VELOCITIES, FORCES};
     for (size_t real = 4; real <= 8; real += 4) {
         bool fits = header->size[BOX] == 0 || header->size[BOX] == (int32_t)(9 * real);
         for (int k = 0; k < 3; k++)
@@ -113,7 +113,6 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     const unsigned char *const raw = frame->raw.data;
     struct header header;
     double box[3][3] = {{0}};
-    (void)trajectory;
     read_header(&header, raw);
     frame->step = header.step;
     frame->time = binary_real(raw + HEADER, 0, header.real, true);
@@ -122,7 +121,12 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     mf_frame_set_box(frame, box);
     TRY(mf_frame_reserve(frame, (size_t)header.atoms, header.size[VELOCITIES] > 0));
     TRY(copy(frame, &header, POSITIONS, frame->position));
-    return frame->has_velocities ? copy(frame, &header, VELOCITIES, frame->velocity) : STATUS_OK;
+    if (frame->has_velocities)
+        TRY(copy(frame, &header, VELOCITIES, frame->velocity));
+    if (!trajectory->forces || header.size[FORCES] == 0)
+        return STATUS_OK;
+    TRY(mf_frame_reserve_forces(frame));
+    return copy(frame, &header, FORCES, frame->force);
 }
 
 static const char *const extensions[] = {"trr", NULL};
@@ -130,7 +134,8 @@ static const char *const extensions[] = {"trr", NULL};
 const struct trajectory_format mf_format_trr = {
     .name = "trr",
     .extensions = extensions,
-    .summary = "GROMACS, single or double precision: positions, and velocities if it has them",
+    .summary =
+        "GROMACS, single or double precision: positions; velocities and forces if it has them",
     .recognise = recognise,
     .fetch = fetch,
     .describe = describe,

@@ -23,14 +23,21 @@ static enum status reserve(double (**array)[3], size_t *capacity, size_t atoms) 
 enum status mf_frame_reserve(struct trajectory_frame *frame, size_t atoms, bool velocities) {
     frame->atoms = atoms;
     frame->has_velocities = velocities;
+    frame->has_forces = false;
     frame->unwrapped = false;
     TRY(reserve(&frame->position, &frame->capacity, atoms));
     return velocities ? reserve(&frame->velocity, &frame->speed_capacity, atoms) : STATUS_OK;
 }
 
+enum status mf_frame_reserve_forces(struct trajectory_frame *frame) {
+    frame->has_forces = true;
+    return reserve(&frame->force, &frame->force_capacity, frame->atoms);
+}
+
 void mf_frame_clear(struct trajectory_frame *frame) {
     mf_memory_free(frame->position);
     mf_memory_free(frame->velocity);
+    mf_memory_free(frame->force);
     mf_source_free(&frame->raw);
     mf_source_free(&frame->scratch);
     *frame = (struct trajectory_frame){0};

@@ -17,6 +17,7 @@ struct trajectory_frame {
     double time;           ///< [ps]; NAN: not known
     bool has_box;          ///< else `box` is 0 and nothing is periodic
     bool has_velocities;   ///< in this frame
+    bool has_forces;       ///< in this frame, and asked for
     bool unwrapped;        ///< positions tell how often an atom has gone around the box
     bool periodic[3];      ///< along the vectors of the box
     double box[3][3];      ///< its vectors a, b, c, one a row [nm]
@@ -24,19 +25,23 @@ struct trajectory_frame {
     double (*position)[3]; ///< shape [atoms, 3] [nm]
     double (
         *velocity)[3]; ///< shape [atoms, 3] [nm/ps]; what it holds means nothing without velocities
-    const char *file;  ///< what follows is the readers' own
-    uint64_t first_byte;             ///< of the frame in the file
-    size_t first_line;               ///< lines of the file before the frame
-    struct bytes raw;                ///< the frame as it stands in the file
-    struct bytes scratch;            ///< of a decoder
-    size_t capacity, speed_capacity; ///< atoms that the arrays could hold
+    double (*force)[3];   ///< shape [atoms, 3] [kJ/mol/nm]; likewise without forces
+    const char *file;     ///< what follows is the readers' own
+    uint64_t first_byte;  ///< of the frame in the file
+    size_t first_line;    ///< lines of the file before the frame
+    struct bytes raw;     ///< the frame as it stands in the file
+    struct bytes scratch; ///< of a decoder
+    size_t capacity, speed_capacity, force_capacity; ///< atoms that the arrays could hold
 };
 
 /// Room for positions, and for velocities if `velocities`, which is what has_velocities becomes;
-/// `unwrapped` becomes false.
+/// `unwrapped` and has_forces become false.
 /// Fails: NO_MEMORY.
 enum status mf_frame_reserve(struct trajectory_frame *frame, size_t atoms,
                              bool velocities) MUST_USE;
+
+/// After that: room for forces, which the frame then has. Fails: NO_MEMORY.
+enum status mf_frame_reserve_forces(struct trajectory_frame *frame) MUST_USE;
 
 void mf_frame_clear(struct trajectory_frame *frame);
 

@@ -49,6 +49,10 @@ static const struct symbol {
     {"g", GRAM, {0, 0, 1}},
     {"kg", 1e3 * GRAM, {0, 0, 1}},
     {"mol", MOLE, {0, 0, 0}},
+    {"kJ", MOLE, {2, -2, 1}}, // and so kJ mol-1 is u nm² ps⁻²
+    {"kcal", 4.184 * MOLE, {2, -2, 1}},
+    {"eV", 96.4853321233, {2, -2, 1}},
+    {"N", 6.02214076208e11, {1, -2, 1}},
 };
 
 static const struct {
@@ -57,6 +61,7 @@ static const struct {
 } kinds[] = {[H5MD_LENGTH] = {"a length", {1, 0, 0}},
              [H5MD_TIME] = {"a time", {0, 1, 0}},
              [H5MD_SPEED] = {"a speed", {1, -1, 0}},
+             [H5MD_FORCE] = {"a force", {1, -2, 1}},
              [H5MD_MASS] = {"a mass", {0, 0, 1}}};
 
 static const struct symbol *find_symbol(const char *name, size_t length) {
@@ -107,8 +112,9 @@ static enum status fail(const char *file, const char *what) {
 }
 
 void mf_h5md_file_close(struct h5md_file *h5md) {
-    struct h5md_element *const all[] = {&h5md->position, &h5md->velocity, &h5md->image, &h5md->id,
-                                        &h5md->mass,     &h5md->species,  &h5md->edges};
+    struct h5md_element *const all[] = {&h5md->position, &h5md->velocity, &h5md->force,
+                                        &h5md->image,    &h5md->id,       &h5md->mass,
+                                        &h5md->species,  &h5md->edges};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         mf_h5md_element_close(all[k]);
     if (h5md->group > 0)
@@ -192,11 +198,8 @@ static enum status check_sizes(const struct h5md_file *h5md) {
     const struct {
         const struct h5md_element *element;
         hsize_t numbers;
-    } all[] = {{&h5md->velocity, 3},
-               {&h5md->image, 3},
-               {&h5md->id, 1},
-               {&h5md->mass, 1},
-               {&h5md->species, 1}};
+    } all[] = {{&h5md->velocity, 3}, {&h5md->force, 3}, {&h5md->image, 3},
+               {&h5md->id, 1},       {&h5md->mass, 1},  {&h5md->species, 1}};
     if (position->rank != 2 || position->size[1] != 3 || position->size[0] < 1)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: \"position\" has frames of %llu times %llu numbers; it should "
@@ -266,9 +269,13 @@ static enum status open_elements(struct h5md_file *h5md, const char *file) {
     const struct {
         struct h5md_element *element;
         const char *name;
-    } all[] = {{&h5md->position, "position"}, {&h5md->velocity, "velocity"},
-               {&h5md->image, "image"},       {&h5md->id, "id"},
-               {&h5md->mass, "mass"},         {&h5md->species, "species"}};
+    } all[] = {{&h5md->position, "position"},
+               {&h5md->velocity, "velocity"},
+               {&h5md->force, "force"},
+               {&h5md->image, "image"},
+               {&h5md->id, "id"},
+               {&h5md->mass, "mass"},
+               {&h5md->species, "species"}};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++)
         TRY(mf_h5md_element_open(all[k].element, file, h5md->group, all[k].name, h5md->bytes));
     TRY(check_sizes(h5md));
@@ -294,7 +301,7 @@ static enum status find_units(struct h5md_file *h5md, struct trajectory *traject
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has positions in \"%s\"", file,
                               h5md->position.unit);
     if (!given)
-        *scale = (struct trajectory_scale){1, 1, 1, 1};
+        *scale = (struct trajectory_scale){1, 1, 1, 1, 1};
     if (!given && !says)
         snprintf(trajectory->note, sizeof trajectory->note,
                  "%.200s: has no unit of positions: nm, ps and u are assumed (--file-units)", file);
@@ -303,6 +310,10 @@ static enum status find_units(struct h5md_file *h5md, struct trajectory *traject
     if (!given)
         scale->speed = scale->length / scale->time;
     TRY(find_unit(file, "velocity", h5md->velocity.unit, H5MD_SPEED, &scale->speed));
+    if (trajectory->forces && h5md->force.there && says && h5md->force.unit[0] == '\0')
+        return fail(file, "\"force\" has no unit: its values want the attribute \"unit\", as \"kJ "
+                          "mol-1 nm-1\"");
+    TRY(find_unit(file, "force", h5md->force.unit, H5MD_FORCE, &scale->force));
     h5md->edge_length = scale->length;
     TRY(find_unit(file, "edges", h5md->edges.unit, H5MD_LENGTH, &h5md->edge_length));
     h5md->mass_unit = scale->mass;

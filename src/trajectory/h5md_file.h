@@ -13,7 +13,7 @@ struct h5md_file {
     bool periodic[3];   ///< along the box's vectors
     double edge_length; ///< unit of the box's edges [nm]
     double mass_unit;   ///< [u]
-    struct h5md_element position, velocity, image, id, mass, species, edges;
+    struct h5md_element position, velocity, force, image, id, mass, species, edges;
 };
 
 /// Open the file of a trajectory and the group of particles that its options name, or its only one;
@@ -29,8 +29,8 @@ void mf_h5md_file_close(struct h5md_file *h5md);
 void mf_h5md_file_species(const struct h5md_file *h5md, int64_t species, char name[STRUCTURE_NAME]);
 
 /// What a unit may be of.
-enum h5md_kind { H5MD_LENGTH, H5MD_TIME, H5MD_SPEED, H5MD_MASS };
+enum h5md_kind { H5MD_LENGTH, H5MD_TIME, H5MD_SPEED, H5MD_FORCE, H5MD_MASS };
 
-/// How many nm, ps, nm/ps or u a unit is. Fails: BAD_INPUT, without a place, for a symbol that is
-/// not known, or a unit of something else. Tested: test_trajectory_h5md.
+/// How many nm, ps, nm/ps, kJ/mol/nm or u a unit is. Fails: BAD_INPUT, without a place, for a
+/// symbol that is not known, or a unit of something else. Tested: test_trajectory_h5md.
 enum status mf_h5md_unit_find(const char *unit, enum h5md_kind kind, double *factor) MUST_USE;

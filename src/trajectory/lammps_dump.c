@@ -5,8 +5,9 @@
 #include <string.h>
 
 static const char *const column_name[LAMMPS_COLUMNS] = {
-    "id", "type", "mol", "element", "typelabel", "mass", "x",  "y",  "z",  "xs", "ys", "zs",
-    "xu", "yu",   "zu",  "xsu",     "ysu",       "zsu",  "ix", "iy", "iz", "vx", "vy", "vz",
+    "id", "type", "mol", "element", "typelabel", "mass", "x",   "y",   "z",
+    "xs", "ys",   "zs",  "xu",      "yu",        "zu",   "xsu", "ysu", "zsu",
+    "ix", "iy",   "iz",  "vx",      "vy",        "vz",   "fx",  "fy",  "fz",
 };
 
 /// What follows "ITEM: …", or NULL.

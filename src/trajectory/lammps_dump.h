@@ -24,7 +24,8 @@ enum lammps_column {
     LAMMPS_XSU = LAMMPS_XU + 3, ///< both
     LAMMPS_IX = LAMMPS_XSU + 3, ///< which image
     LAMMPS_VX = LAMMPS_IX + 3,
-    LAMMPS_COLUMNS = LAMMPS_VX + 3,
+    LAMMPS_FX = LAMMPS_VX + 3,
+    LAMMPS_COLUMNS = LAMMPS_FX + 3,
 };
 
 enum { LAMMPS_MAX_COLUMNS = 128 };

@@ -399,6 +399,22 @@ static void copy_surroundings(const struct trajectory_frame *frame,
     beads->file = frame->file;
 }
 
+/// The forces of beads, whose atoms are in no other.
+static enum status add_forces(const struct mapping *mapping, const struct trajectory_frame *frame,
+                              struct trajectory_frame *beads) {
+    TRY(mf_frame_reserve_forces(beads));
+    for (size_t k = 0; k < mapping->beads; k++) {
+        const struct mapping_bead *const bead = &mapping->bead[k];
+        for (int d = 0; d < 3; d++) {
+            double sum = 0;
+            for (size_t i = 0; i < bead->count; i++)
+                sum += frame->force[mapping->atom[bead->first + i]][d];
+            beads->force[k][d] = sum;
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status mf_mapping_apply(const struct mapping *mapping, const struct trajectory_frame *frame,
                              struct trajectory_frame *beads) {
     double reciprocal[3][3];
@@ -407,6 +423,8 @@ enum status mf_mapping_apply(const struct mapping *mapping, const struct traject
                               frame->file, frame->number, frame->atoms, mapping->atoms);
     TRY(mf_frame_reserve(beads, mapping->beads, frame->has_velocities));
     copy_surroundings(frame, beads);
+    if (frame->has_forces)
+        TRY(add_forces(mapping, frame, beads));
     mf_frame_reciprocal(frame, reciprocal);
     for (size_t k = 0; k < mapping->beads; k++) {
         const struct mapping_bead *const bead = &mapping->bead[k];

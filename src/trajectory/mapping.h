@@ -48,7 +48,7 @@ void mf_mapping_clear(struct mapping *mapping);
 
 /// Centres of beads: R = Σ w_i r_i with w_i = m_i/Σ m or 1/n, V = Σ w_i v_i. Each bead is made
 /// whole first: every atom is taken in its image nearest to the atom before, which is right if
-/// these two are closer than half the least height of the box.
+/// these two are closer than half the least height of the box. F = Σ f_i, if the frame has forces.
 /// @param[out] beads  all zero or of an earlier call; time, step and box are those of the frame
 /// Fails: BAD_INPUT if the frame has other atoms; NO_MEMORY. Threads: any number, of other frames.
 enum status mf_mapping_apply(const struct mapping *mapping, const struct trajectory_frame *frame,

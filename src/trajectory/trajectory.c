@@ -121,7 +121,7 @@ static void note_reduced(struct trajectory *trajectory, const char *units) {
 static enum status find_units(struct trajectory *trajectory, const char *units) {
     const struct trajectory_format *const format = trajectory->format;
     if (format->unit_source == TRAJECTORY_OWN_UNITS)
-        trajectory->scale = (struct trajectory_scale){1, 1, 1, 1};
+        trajectory->scale = (struct trajectory_scale){1, 1, 1, 1, 1};
     else if (units || format->unit_source == TRAJECTORY_ANGSTROM) {
         note_reduced(trajectory, units);
         return mf_trajectory_units_find(units ? units : "real", &trajectory->scale);
@@ -172,8 +172,10 @@ static enum status begin(struct trajectory *trajectory) {
 enum status mf_trajectory_open(struct trajectory *trajectory, const char *file,
                                const struct trajectory_options *options) {
     enum status status;
-    *trajectory =
-        (struct trajectory){.file = file, .time_step = options->time_step, .group = options->group};
+    *trajectory = (struct trajectory){.file = file,
+                                      .time_step = options->time_step,
+                                      .group = options->group,
+                                      .forces = options->forces};
     memcpy(trajectory->box, options->box, sizeof trajectory->box);
     if (mf_trajectory_memory_find(file)) {
         trajectory->format = &mf_trajectory_memory;
@@ -340,20 +342,25 @@ enum status mf_trajectory_read_count(const struct trajectory *trajectory, const 
 #define BOHR 0.0529177210903
 /// The time of "electron" is a femtosecond, its speed that of one Bohr in 1.03275 fs.
 #define ATOMIC_TIME 1.03275e-3
+/// Of energies in kJ/mol: kcal/mol, eV, Hartree; and a newton in kJ/mol/nm.
+#define KILOCALORIE 4.184
+#define ELECTRON_VOLT 96.4853321233
+#define HARTREE 2625.49963948
+#define NEWTON 6.02214076208e11
 
 const char *const mf_trajectory_unit_names[] = {"real",     "metal", "nano",  "lj",    "si",
                                                 "electron", "cgs",   "micro", "nm-ps", NULL};
 
 static const struct trajectory_scale scales[] = {
-    {0.1, 1e-3, 1, 100},
-    {0.1, 1, 1, 0.1},
-    {1, 1e3, 1e-18 * GRAM, 1e-3},
-    {1, 1, 1, 1},
-    {1e9, 1e12, 1e3 * GRAM, 1e-3},
-    {BOHR, 1e-3, 1, BOHR / ATOMIC_TIME},
-    {1e7, 1e12, GRAM, 1e-5},
-    {1e3, 1e6, 1e-12 * GRAM, 1e-3},
-    {1, 1, 1, 1},
+    {0.1, 1e-3, 1, 100, KILOCALORIE / 0.1},
+    {0.1, 1, 1, 0.1, ELECTRON_VOLT / 0.1},
+    {1, 1e3, 1e-18 * GRAM, 1e-3, 1e-12 * NEWTON},
+    {1, 1, 1, 1, 1},
+    {1e9, 1e12, 1e3 * GRAM, 1e-3, NEWTON},
+    {BOHR, 1e-3, 1, BOHR / ATOMIC_TIME, HARTREE / BOHR},
+    {1e7, 1e12, GRAM, 1e-5, 1e-5 * NEWTON},
+    {1e3, 1e6, 1e-12 * GRAM, 1e-3, 1e-9 * NEWTON},
+    {1, 1, 1, 1, 1},
 };
 
 enum { STYLES = sizeof scales / sizeof *scales };

@@ -28,6 +28,7 @@ struct trajectory_scale {
     double time;   ///< [ps]
     double mass;   ///< [u]
     double speed;  ///< [nm/ps]
+    double force;  ///< [kJ/mol/nm]
 };
 
 /// The unit styles of LAMMPS (manual, command `units`) by their names, NULL-terminated; in "lj"
@@ -98,6 +99,7 @@ struct trajectory_options {
     double time_step; ///< of the simulation [ps]: gives frames a time that have but a step; 0: none
     const char *group; ///< of particles, in a file that may have several; NULL: the only one
     double box[3];     ///< of frames that have none [nm]; 0: none
+    bool forces;       ///< are to be read where there are any
 };
 
 struct trajectory {
@@ -108,6 +110,7 @@ struct trajectory {
     double time_step;
     const char *group;    ///< borrowed
     double box[3];        ///< as told [nm]
+    bool forces;          ///< are to be read where there are any
     uint64_t frames;      ///< in the file, where it says so; 0: they end with it
     char note[320];       ///< what was assumed of the file, a line for a person; "": nothing
     struct source source; ///< what follows is the readers' own

@@ -369,6 +369,16 @@ static void write_weighted(const struct measure_result *result, struct json_writ
     mf_json_end(writer);
 }
 
+/// What --forces has measured, for "force-matching".
+static void write_forces(const struct measure_result *result, struct json_writer *writer) {
+    if (result->measured->forces.equations.frames == 0)
+        return;
+    mf_json_begin(writer, "forces");
+    mf_json_write_text(writer, "file", "forces.tsv");
+    mf_json_write_text(writer, "gram_file", "forces_gram.tsv");
+    mf_json_end(writer);
+}
+
 static void write_targets(const struct measure_result *result, struct json_writer *writer) {
     mf_json_begin(writer, "target");
     if (!mf_measure_output_is_alone(result))
@@ -379,6 +389,7 @@ static void write_targets(const struct measure_result *result, struct json_write
         write_motion_targets(result, writer);
     if (!mf_measure_output_is_alone(result))
         write_weighted(result, writer);
+    write_forces(result, writer);
     mf_json_end(writer);
 }
 

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "scene/molecules_file.h"
 #include "io/units.h"
+#include "measure/measured_forces.h"
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"
@@ -330,6 +331,7 @@ static enum status find_equilibrium(struct run *run) {
 
 static enum status write_results(struct run *run, bool interrupted) {
     mf_measured_end(&run->measured);
+    TRY(mf_measured_forces_check(&run->measured, run->request->frames.file[0]));
     const struct measure_result result = {.request = run->request,
                                           .frames = &run->frames,
                                           .mapping = &run->mapping,

@@ -50,6 +50,17 @@ static enum status write_motion(const struct measure_result *result) {
     return STATUS_OK;
 }
 
+/// forces.tsv and forces_gram.tsv.
+static enum status write_forces(const struct measure_result *result) {
+    const struct force_equations *const equations = &result->measured->forces.equations;
+    char file[OUTPUT_PATH_SIZE], gram[OUTPUT_PATH_SIZE];
+    if (equations->frames == 0)
+        return STATUS_OK;
+    snprintf(file, sizeof file, "%.*s/forces.tsv", OUTPUT_PATH_SIZE - 64, result->folder);
+    snprintf(gram, sizeof gram, "%.*s/forces_gram.tsv", OUTPUT_PATH_SIZE - 64, result->folder);
+    return mf_force_equations_write(equations, file, gram);
+}
+
 enum status mf_measure_tables_write(const struct measure_result *result) {
     const struct simulation_setup setup = make_setup(result);
     const struct measure_plan plan = {.samples = (int64_t)result->measured->frames};
@@ -60,6 +71,7 @@ enum status mf_measure_tables_write(const struct measure_result *result) {
         TRY(use->observable->write(use->state, &results));
     if (mf_measure_tables_have_motion(result))
         TRY(write_motion(result));
+    TRY(write_forces(result));
     return mf_measure_tables_have_etd(result)
                ? mf_etd_observable.write(&result->measured->motion.etd, &results)
                : STATUS_OK;

@@ -182,7 +182,8 @@ static void test_configurations_carry_molecules_on(void **state) {
     while (fgets(line, sizeof line, dump) && strncmp(line, "ITEM: ATOMS", 11) != 0)
         ;
     assert_string_equal(line,
-                        "ITEM: ATOMS id mol type element typelabel mass x y z ix iy iz vx vy vz\n");
+                        "ITEM: ATOMS id mol type element typelabel mass x y z ix iy iz vx vy vz fx "
+                        "fy fz\n");
     check_bonds("out/configuration.tsv", "out/configuration_bonds.tsv");
     // Types are W, A, B: the first of 60 single beads, after 70 molecules, is molecule 71.
     assert_non_null(fgets(first, sizeof first, dump));

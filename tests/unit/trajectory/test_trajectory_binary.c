@@ -335,6 +335,22 @@ static void test_trr_is_read_in_double_precision(void **state) {
     close_all();
 }
 
+static void test_trr_has_forces_where_they_are_asked_for(void **state) {
+    file_size = 0;
+    write_trr(0, true, true, true);
+    write_trr(1, true, false, false);
+    for (int asked = 0; asked < 2; asked++) {
+        assert_ok(try(state, &(struct trajectory_options){.forces = asked}));
+        next(true);
+        assert_int_equal(frame.has_forces, asked);
+        if (asked)
+            assert_true(frame.force[2][1] == -coordinate(0, 2, 1));
+        next(true);
+        assert_false(frame.has_forces);
+        close_all();
+    }
+}
+
 // xtc ---------------------------------------------------------------------------------------------
 
 static void test_xtc_has_few_atoms_unpacked(void **state) {
@@ -400,6 +416,7 @@ int main(void) {
         TEST(test_dcd_of_lammps_has_the_time_step_of_its_units),
         TEST(test_dcd_is_refused_when_its_records_do_not_fit),
         TEST(test_trr_is_read_in_double_precision),
+        TEST(test_trr_has_forces_where_they_are_asked_for),
         TEST(test_xtc_has_few_atoms_unpacked),
         TEST(test_xtc_has_64_bit_sizes_since_2023),
     };

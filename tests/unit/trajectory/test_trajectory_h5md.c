@@ -273,6 +273,37 @@ static void test_h5md_gives_all_that_it_has_when_it_speaks_angstrom(void **state
     close_all();
 }
 
+/// kcal/mol/Å are 41.84 kJ/mol/nm; without a unit it is not known what they are.
+static void test_h5md_has_forces_where_they_are_asked_for(void **state) {
+    static const struct trajectory_options asked = {.forces = true};
+    static const char *const unit[] = {"kcal mol-1 Angstrom-1", "kJ mol-1 nm-1", NULL, "nm"};
+    static const double factor[] = {41.84, 1};
+    for (int k = 0; k < 4; k++) {
+        double force[FRAMES][ATOMS][3];
+        begin_file(state);
+        const hid_t group = begin_group("all");
+        write_positions(group, H5T_IEEE_F32LE, true, "nm");
+        for (int n = 0; n < FRAMES * ATOMS * 3; n++)
+            force[n / 3 / ATOMS][n / 3 % ATOMS][n % 3] = n;
+        write_element(group, "force", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 3, vectors, force,
+                      unit[k]);
+        H5Gclose(group);
+        end_file();
+        if (k >= 2) {
+            assert_int_equal(try(&asked), STATUS_BAD_INPUT);
+            assert_contains(mf_status_message(),
+                            k == 2 ? "\"force\" has no unit: its values want the attribute"
+                                   : "the unit \"nm\" is not that of a force");
+            continue;
+        }
+        assert_ok(try(&asked));
+        next(true);
+        assert_true(frame.has_forces);
+        assert_close(frame.force[1][2], 5 * factor[k], 1e-9);
+        close_all();
+    }
+}
+
 static void test_h5md_has_no_times_when_its_positions_are_fixed(void **state) {
     begin_file(state);
     const hid_t group = begin_group("all");
@@ -653,6 +684,7 @@ int main(void) {
         TEST(test_h5md_is_in_nm_and_ps_when_it_does_not_say),
         TEST(test_h5md_unit_is_read_when_its_text_has_room_to_spare),
         TEST(test_h5md_gives_all_that_it_has_when_it_speaks_angstrom),
+        TEST(test_h5md_has_forces_where_they_are_asked_for),
         TEST(test_h5md_has_no_times_when_its_positions_are_fixed),
         TEST(test_h5md_atoms_are_sorted_when_it_has_ids),
         TEST(test_h5md_is_refused_when_some_frames_have_no_ids),

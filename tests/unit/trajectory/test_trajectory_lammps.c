@@ -298,6 +298,32 @@ static void test_units_are_those_of_the_manual(void **state) {
     }
 }
 
+/// kcal/mol/Å, eV/Å and newtons in kJ/mol/nm: those of the manual.
+static void test_dump_has_forces_where_they_are_asked_for(void **state) {
+    static const char text[] =
+        "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp "
+        "pp\n0 9\n0 9\n0 9\nITEM: ATOMS id x y z fx fy fz\n"
+        "2 1 2 3 4 5 -6\n1 1 2 3 7 8 9\n";
+    static const struct {
+        const char *units;
+        double force;
+    } known[] = {
+        {"real", 41.84}, {"metal", 964.853321}, {"si", 6.02214076e11}, {"lj", 1}, {"nm-ps", 1}};
+    struct trajectory_frame frame = {0};
+    bool more;
+    const char *const file = temporary_folder_write(*state, "a.txt", text, strlen(text));
+    for (size_t k = 0; k < 2 * sizeof known / sizeof *known; k++) {
+        const struct trajectory_options options = {.units = known[k / 2].units, .forces = k % 2};
+        assert_ok(mf_trajectory_open(&trajectory, file, &options));
+        assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+        assert_int_equal(frame.has_forces, k % 2);
+        if (frame.has_forces)
+            assert_true(fabs(frame.force[1][2] / (-6 * known[k / 2].force) - 1) < 1e-8);
+        mf_trajectory_close(&trajectory);
+    }
+    mf_frame_clear(&frame);
+}
+
 static void assert_refused(void **state, const char *text, const char *part) {
     struct trajectory_frame frame = {0};
     bool more = true;
@@ -353,6 +379,7 @@ int main(void) {
         TEST(test_dump_is_periodic_when_it_does_not_say),
         TEST(test_units_must_be_told_unless_the_file_does),
         cmocka_unit_test(test_units_are_those_of_the_manual),
+        TEST(test_dump_has_forces_where_they_are_asked_for),
         TEST(test_dump_is_refused_with_its_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

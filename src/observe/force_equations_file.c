@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Comment lines say what the unknowns are:
+//   # frames 1000 64 beads 864 square 1.2e9
+//   # curve pairs A-B 13 0.1 0.01
+//   # curve bond backbone 40 0.2 0.005
+// the frames of all and of a block; the nodes of a curve, the first, and between two [nm, rad].
+#include "base/memory.h"
+#include "io/data_table.h"
+#include "observe/force_equations.h"
+#include "trajectory/source.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char *kind_name(int order) {
+    return order == FORCES_OF_PAIRS ? "pairs" : mf_bonded_kinds[order]->name;
+}
+
+static enum status note(struct bytes *text, const char *format, ...)
+    __attribute__((format(printf, 2, 3), warn_unused_result));
+static enum status note(struct bytes *text, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const enum status status = mf_source_note(text, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+static enum status describe(const struct force_equations *equations, struct bytes *text) {
+    TRY(note(text, "Normal equations of forces [nm, rad, kJ/mol], summed over blocks of frames: b "
+                   "at the nodes"));
+    TRY(note(text, "frames %zu %zu beads %.0f square %.17g", equations->frames, equations->each,
+             equations->beads, equations->square));
+    for (size_t n = 0; n < equations->curves; n++) {
+        const struct force_curve *const curve = &equations->curve[n];
+        TRY(note(text, "curve %s %s %zu %.17g %.17g", kind_name(curve->order), curve->name,
+                 curve->nodes, curve->low, curve->width));
+    }
+    return STATUS_OK;
+}
+
+enum { BLOCK_NAME = 24 };
+
+/// @param[in] before  columns that stand before those of blocks, or NULL
+static enum status write(const struct force_equations *equations, const char *file,
+                         const char *comment, const double *before, const double *numbers,
+                         size_t rows) {
+    struct data_column column[FORCES_BLOCKS + 1];
+    char name[FORCES_BLOCKS][BLOCK_NAME];
+    size_t columns = 0;
+    if (before)
+        column[columns++] = (struct data_column){"q[nm or rad]", before, NULL};
+    for (size_t b = 0; b < force_equations_blocks(equations); b++) {
+        snprintf(name[b], BLOCK_NAME, "block_%zu", b + 1);
+        column[columns++] = (struct data_column){name[b], numbers + b * rows, "%.15g"};
+    }
+    return mf_data_table_write(file, comment, column, columns, rows);
+}
+
+enum status mf_force_equations_write(const struct force_equations *equations, const char *file,
+                                     const char *gram_file) {
+    enum status status = STATUS_OK;
+    struct bytes text = {0};
+    double *q = NULL;
+    NEW_ARRAY(q, equations->size);
+    for (size_t n = 0; n < equations->curves; n++)
+        for (size_t k = 0; k < equations->curve[n].nodes; k++)
+            q[equations->curve[n].first + k] =
+                equations->curve[n].low + (double)k * equations->curve[n].width;
+    CHECK(describe(equations, &text));
+    CHECK(write(equations, file, (const char *)text.data, q, equations->product, equations->size));
+    CHECK(write(equations, gram_file,
+                "G of the same unknowns: rows (1, 1), (2, 1), (2, 2), (3, 1), …", NULL,
+                equations->gram, force_equations_entries(equations)));
+done:
+    mf_memory_free(q);
+    mf_source_free(&text);
+    return status;
+}
+
+// Reading -----------------------------------------------------------------------------------------
+
+static int find_order(const char *kind) {
+    for (int order = FORCES_OF_PAIRS; order < BONDED_KINDS; order++)
+        if (strcmp(kind, kind_name(order)) == 0)
+            return order;
+    return BONDED_KINDS;
+}
+
+/// A line of the comments as "curve pairs A-B 13 0.1 0.01"; false if it is another.
+static bool read_curve(const char *line, struct force_curve *curve) {
+    char kind[FORCES_NAME_SIZE];
+    *curve = (struct force_curve){0};
+    if (sscanf(line, "# curve %63s %63s %zu %lf %lf", kind, curve->name, &curve->nodes, &curve->low,
+               &curve->width) != 5)
+        return false;
+    curve->order = find_order(kind);
+    return curve->order < BONDED_KINDS && curve->nodes >= 2 && curve->nodes <= FORCES_MAX_NODES &&
+           curve->width > 0 && isfinite(curve->low) && isfinite(curve->width);
+}
+
+static enum status fail(const char *file, const char *what) {
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: %s: it is to be a table that \"mesofit measure --forces\" has "
+                          "written",
+                          file, what);
+}
+
+/// What the comments say.
+static enum status read_heading(struct force_equations *equations, const struct data_table *table,
+                                const char *file) {
+    struct force_curve curve[FORCES_MAX_CURVES];
+    size_t curves = 0, frames = 0, each = 0, nodes = 0;
+    double beads = 0, square = 0;
+    for (const char *line = table->comments; line; line = strchr(line, '\n')) {
+        line += *line == '\n';
+        if (sscanf(line, "# frames %zu %zu beads %lf square %lf", &frames, &each, &beads,
+                   &square) == 4)
+            continue;
+        if (curves < FORCES_MAX_CURVES && read_curve(line, &curve[curves]))
+            nodes += curve[curves++].nodes;
+    }
+    const size_t blocks = each ? (frames + each - 1) / each : 0;
+    if (curves == 0 || nodes > FORCES_MAX_NODES || nodes != table->rows || blocks == 0 ||
+        blocks > FORCES_BLOCKS || blocks + 1 != table->columns || !(square > 0))
+        return fail(file, "its heading does not fit its rows and columns");
+    TRY(mf_force_equations_init(equations, curve, curves));
+    equations->frames = frames;
+    equations->each = each;
+    equations->beads = beads;
+    equations->square = square;
+    return STATUS_OK;
+}
+
+/// Columns from `first` on, shape [blocks, rows].
+static void take(const struct data_table *table, size_t first, double *numbers) {
+    for (size_t row = 0; row < table->rows; row++)
+        for (size_t b = 0; b + first < table->columns; b++)
+            numbers[b * table->rows + row] = table->values[row * table->columns + first + b];
+}
+
+enum status mf_force_equations_read(struct force_equations *equations, const char *file,
+                                    const char *gram_file) {
+    CLEARED_BY(mf_data_table_clear) struct data_table table = {0}, gram = {0};
+    TRY(mf_data_table_read(&table, file, 2));
+    TRY(read_heading(equations, &table, file));
+    take(&table, 1, equations->product);
+    TRY(mf_data_table_read(&gram, gram_file, 1));
+    if (gram.rows != force_equations_entries(equations) || gram.columns + 1 != table.columns)
+        return fail(gram_file, "its rows and columns are not those of the other file");
+    take(&gram, 0, equations->gram);
+    return STATUS_OK;
+}
