@@ -72,7 +72,7 @@ static enum status fill_base(const struct fit_file *fit, const struct unknowns *
 
 enum status mf_fit_base_find(struct fit_file *fit) {
     CLEARED_BY(mf_unknowns_clear) struct unknowns unknowns = {0};
-    if (fit->method->kind == INVERSE_INVERSION)
+    if (fit->method->kind != INVERSE_MATCHING)
         return STATUS_OK;
     TRY(mf_unknowns_init(&unknowns, &fit->problem));
     for (int kind = 0; kind < UNKNOWNS; kind++) {

@@ -112,7 +112,7 @@ static enum status check_integrals(const struct fit_file *fit, const char *file)
 /// An inversion changes the potential of all pairs by the response of all pairs.
 static enum status check_intermolecular(const struct fit_file *fit, const char *file) {
     char others[METHODS_TEXT_SIZE];
-    if (fit->method->kind != INVERSE_INVERSION ||
+    if (fit->method->kind == INVERSE_MATCHING ||
         !targets_ask(&fit->problem.targets, mf_rdf_intermolecular_kind()))
         return STATUS_OK;
     return mf_status_fail(
@@ -130,10 +130,10 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
             !(unknown_is_omega(kind) ? fit->method->finds_omega : fit->method->finds_potential))
             return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find %s",
                                   file, fit->method->name, mf_inverse_unknown_names[kind]);
-    if (fit->numbers > 0 && fit->method->kind == INVERSE_INVERSION)
+    if (fit->numbers > 0 && fit->method->kind != INVERSE_MATCHING)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: method.name: \"%s\" does not find numbers",
                               file, fit->method->name);
-    for (int kind = 0; kind < TARGETS && fit->method->kind == INVERSE_INVERSION; kind++)
+    for (int kind = 0; kind < TARGETS && fit->method->kind != INVERSE_MATCHING; kind++)
         if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != TARGET_DENSITY &&
             kind != mf_kirkwood_buff_kind() && !is_inverted(fit, kind) &&
             targets_ask(&fit->problem.targets, kind))
@@ -164,7 +164,7 @@ static enum status check_bins(const struct fit_file *fit, const char *file) {
 }
 
 static bool follows_pairs(const struct inverse_method *method) {
-    return method->kind == INVERSE_INVERSION || method == &mf_successive;
+    return method->kind != INVERSE_MATCHING || method == &mf_successive;
 }
 
 /// What moves the curves of all pairs would move that of pairs that there are not.

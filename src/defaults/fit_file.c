@@ -136,6 +136,7 @@ static void state_problem(struct fit_file *fit, const struct run_options *option
         .threads = options->threads,
     };
     problem->scene.cancel = options->stop;
+    problem->forces = fit->files.forces.given ? &fit->files.forces.equations : NULL;
     problem->numbers = fit->numbers;
     memcpy(problem->number, fit->number, sizeof problem->number);
     mf_fit_numbers_lend(&fit->scene, problem);

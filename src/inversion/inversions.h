@@ -9,7 +9,8 @@
     EACH(imc)                                                                                      \
     EACH(ibi)                                                                                      \
     EACH(hnc)                                                                                      \
-    EACH(relative_entropy)
+    EACH(relative_entropy)                                                                         \
+    EACH(force_matching)
 
 #define INVERSION_DECLARE(name) extern const struct inverse_method mf_##name;
 INVERSIONS(INVERSION_DECLARE)

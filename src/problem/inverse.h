@@ -11,6 +11,7 @@
 #include "dynamics/simulation.h"
 #include "forces/many_body.h"
 #include "observe/bonded_distribution.h"
+#include "observe/force_equations.h"
 #include "optimise/optimiser.h"
 #include "problem/sampling_engine.h"
 #include "problem/targets.h"
@@ -179,6 +180,7 @@ struct inverse_problem {
     struct simulation_setup scene;           ///< all but the unknowns; its composition is set
     double core_threshold;                   ///< g* beyond the core is above this, and two errors
     double core_stiffness;                   ///< of the core (mf_core_fill) [k_B T_0/λ²]
+    const struct force_equations *forces; ///< of a trajectory; NULL: none
     const struct sampling_engine *engine;    ///< samples in the place of ours; NULL: none
     uint64_t seed;
     int threads;
@@ -324,6 +326,7 @@ enum { INVERSE_MAX_SPANS = 10240 };
 /// What kind of method it is.
 enum inverse_kind {
     INVERSE_INVERSION, ///< turns g(r) into Φ by samples of a Monte Carlo of its own (inversion/)
+    INVERSE_DIRECT,    ///< finds Φ in one step and simulates nothing
     INVERSE_MATCHING,  ///< moves variables, and simulates the scene with what they make (matching/)
 };
 

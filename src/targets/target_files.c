@@ -118,6 +118,7 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
             TRY(read_settings(files, &about, &child));
         TRY(record->read(files, kind, &child, scene));
     }
+    TRY(mf_target_forces_read(&files->forces, &object, scene->units));
     mf_json_finish(&object);
     check_motion(files, &object);
     check_window(files, &object);
@@ -145,6 +146,7 @@ void mf_target_files_clear(struct target_files *files) {
     }
     for (size_t place = 0; place < OBSERVABLES_MAX; place++)
         mf_memory_free(files->settings[place]);
+    mf_target_forces_clear(&files->forces);
     *files = (struct target_files){0};
 }
 
@@ -165,6 +167,7 @@ void mf_target_files_write(const struct target_files *files, struct json_writer 
         mf_json_write_fields(writer, mf_target_files_use_fields, &files->use[kind]);
         mf_json_end(writer);
     }
+    mf_target_forces_write(&files->forces, writer);
     mf_json_end(writer);
 }
 
@@ -179,6 +182,10 @@ void mf_target_files_digest(const struct target_files *files, uint64_t *digest) 
             if (arrays[k])
                 mf_digest_add(digest, arrays[k], bytes);
     }
+    const struct force_equations *const forces = &files->forces.equations;
+    if (files->forces.given)
+        mf_digest_add(digest, forces->product,
+                      force_equations_blocks(forces) * forces->size * sizeof(double));
 }
 
 /// Window and interval in which motion is measured, by the first target that defines them: D's own

@@ -7,6 +7,7 @@
 #include "observe/rdf_observable.h"
 #include "targets/target_curve.h"
 #include "targets/target_etd.h"
+#include "targets/target_forces.h"
 #include "targets/target_groups.h"
 #include "targets/target_kirkwood_buff.h"
 #include "targets/target_pairs.h"
@@ -25,6 +26,7 @@ struct target_files {
     void *own[TARGETS];                 ///< what the reader of each kind keeps
     /// Of the observables whose targets say them, by their places in the list; else NULL.
     void *settings[OBSERVABLES_MAX];
+    struct target_forces forces;
     struct target_use {
         double weight; ///< 0: by the errors
         int fitted;    ///< 0: only compared with the result

@@ -152,7 +152,9 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
     const struct targets *targets = &state->problem.targets;
     const struct units *units = &state->scene.units;
     const double temperature = state->problem.scene.temperature;
-    if (method->kind != INVERSE_INVERSION)
+    if (method->kind == INVERSE_DIRECT)
+        return false; // it promises nothing of its targets
+    if (method->kind == INVERSE_MATCHING)
         return mf_fit_verification_is_worse(verification, targets, of_fit->error, of_fit->variance,
                                             reason);
     if (method->restricted)
