@@ -190,28 +190,48 @@ static void add_one_term(void *context, int order, int group, const size_t *bead
 
 // G and b -----------------------------------------------------------------------------------------
 
-/// G += X·X of a bead, of its three components at once, and b += X·F.
-/// @param[in] x  shape [3, size]
-SIMD_CLONES static void add_products(const double *restrict x, const double force[3], size_t size,
-                                     double *restrict gram, double *restrict product) {
-    const double *const y = x + size, *const z = y + size;
-    for (size_t k = 0; k < size; gram += ++k) {
-        const double a = x[k], b = y[k], c = z[k];
-        if (a == 0 && b == 0 && c == 0)
+/// The X of a bead where it is not 0: few of all unknowns where types are many.
+struct own {
+    size_t count, node[FORCES_MAX_NODES];
+    double x[3][FORCES_MAX_NODES];
+};
+
+static void gather(const double *x, size_t size, struct own *own) {
+    own->count = 0;
+    for (size_t k = 0; k < size; k++) {
+        if (x[k] == 0 && x[size + k] == 0 && x[2 * size + k] == 0)
             continue;
-        product[k] += a * force[0] + b * force[1] + c * force[2];
-        for (size_t l = 0; l <= k; l++)
-            gram[l] += a * x[l] + b * y[l] + c * z[l];
+        own->node[own->count] = k;
+        for (size_t d = 0; d < 3; d++)
+            own->x[d][own->count] = x[d * size + k];
+        own->count++;
+    }
+}
+
+/// G += X·X of a bead, and b += X·F.
+SIMD_CLONES static void add_products(const struct own *own, const double force[3],
+                                     double *restrict gram, double *restrict product) {
+    const double *const x = own->x[0], *const y = own->x[1], *const z = own->x[2];
+    double sum[FORCES_MAX_NODES];
+    for (size_t n = 0; n < own->count; n++) {
+        const size_t k = own->node[n];
+        double *const row = gram + k * (k + 1) / 2;
+        product[k] += x[n] * force[0] + y[n] * force[1] + z[n] * force[2];
+        for (size_t l = 0; l <= n; l++)
+            sum[l] = x[n] * x[l] + y[n] * y[l] + z[n] * z[l];
+        for (size_t l = 0; l <= n; l++)
+            row[own->node[l]] += sum[l];
     }
 }
 
 static void sum_up(struct frame_forces *forces, const struct frame_forces_plan *plan,
                    const struct trajectory_frame *beads) {
     const size_t size = plan->equations.size;
+    struct own own;
     for (size_t k = forces->begin; k < forces->end; k++) {
         const double *const force = beads->force[k];
-        add_products(forces->way + 3 * (k - forces->begin) * size, force, size, forces->gram,
-                     forces->product);
+        gather(forces->way + 3 * (k - forces->begin) * size, size, &own);
+        add_products(&own, force, forces->gram, forces->product);
         forces->square += force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
     }
 }
@@ -258,11 +278,11 @@ static void stretch_range(void *context, int order, int group, const size_t *bea
     ranges->high[order][group] = fmax(ranges->high[order][group], batch.q[0]);
 }
 
-/// Nodes from as far below the least as above the largest value of a frame; all around of a circle.
+/// Nodes from below the least to above the largest value of a frame; all around of a circle.
 static struct force_curve curve_of_terms(const struct ranges *ranges, int order, int group,
                                          const char *name) {
     enum { NODES = 41, AROUND = 60 };
-    static const double beyond = 0.25, least = 0.02;
+    static const double beyond = 0.5, least = 0.1;
     const struct bonded_kind *const kind = mf_bonded_kinds[order];
     const double low = ranges->low[order][group], high = ranges->high[order][group];
     const double more = fmax(beyond * (high - low), least * fabs(high));

@@ -44,9 +44,7 @@ bool mf_force_equations_find(const struct force_curve *curve, double q, size_t *
         return false;
     if (circle)
         at -= (double)curve->nodes * floor(at / (double)curve->nodes);
-    else
-        at = fmin(fmax(at, 0), last);
-    const size_t below = (size_t)fmin(floor(at), circle ? last : last - 1);
+    const size_t below = (size_t)fmin(fmax(floor(at), 0), circle ? last : last - 1);
     *node = curve->first + below;
     *next = curve->first + (below + 1) % curve->nodes;
     *share = at - (double)below;

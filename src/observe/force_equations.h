@@ -61,8 +61,9 @@ enum status mf_force_equations_init(struct force_equations *equations,
                                     const struct force_curve *curve, size_t curves) MUST_USE;
 void mf_force_equations_clear(struct force_equations *equations);
 
-/// Where a q is among the nodes: it has the share 1 − *share of *node, and the rest of *next. False
-/// of a pair that is beyond them; a bonded term has the force of the nearest node there.
+/// Where a q is among the nodes: it has the share 1 − *share of *node, and *share of *next; a
+/// bonded term beyond all nodes is on the line of the last two. False of a pair that is beyond
+/// them.
 bool mf_force_equations_find(const struct force_curve *curve, double q, size_t *node, size_t *next,
                              double *share);
 

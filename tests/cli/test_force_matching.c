@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Force matching from outside: a mixture of chains with bonds, angles and dihedrals, simulated with
+// known laws, measured with its forces, comes back; and what cannot be matched is said in one line.
+#include "io/data_table.h"
+#include "shared/run_program.h"
+#include "shared/small_inputs.h"
+#include "shared/testing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct run_program_result result;
+
+static const char scene[] =
+    "{\"seed\": 11, \"box\": [3.6, 3.6, 3.6], \"time_step\": 0.005,\n"
+    "\"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": 100, \"length\": 0.6}},\n"
+    "\"angles\": {\"bend\": {\"law\": \"harmonic\", \"k\": 12, \"angle\": 110}},\n"
+    "\"dihedrals\": {\"twist\": {\"law\": \"ryckaert-bellemans\", \"c1\": 1, \"c2\": 1.5}},\n"
+    "\"molecules\": {\"chain\": {\"count\": 30, \"chain\": {\"beads\": [\"A\", \"B\", \"B\", "
+    "\"A\"],\n"
+    "  \"bond\": \"backbone\", \"angle\": \"bend\", \"dihedral\": \"twist\"}}},\n"
+    "\"conservative\": {\"A-A\": {\"law\": \"soft-repulsion\", \"a\": 20},\n"
+    "  \"A-B\": {\"law\": \"soft-repulsion\", \"a\": 12},\n"
+    "  \"B-B\": {\"law\": \"soft-repulsion\", \"a\": 25}},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+    "\"measure\": {\"equilibration\": 1000, \"samples\": 60, \"every\": 40},\n"
+    "\"snapshots\": {\"every\": 40, \"formats\": [\"lammps-dump\"]}}\n";
+
+/// What is added to target.json to make it a run file.
+static const char method[] =
+    "{\"seed\": 1, \"unknowns\": {\"potential\": {}}, \"method\": {\"name\": \"force-matching\"},\n"
+    "\"verification\": {\"replicas\": 2, \"samples\": 40, \"every\": 20, \"equilibration\": "
+    "400},\n";
+
+#define DUMP "truth/snapshots/trajectory.lammpstrj"
+#define MEASURE(...)                                                                               \
+    RUN_PROGRAM(&result, "measure", __VA_ARGS__, "--static", "--temperature", "120.272",           \
+                "--q-range", "0", "--bins", "60", "--range", "1.2", "--force", "-o", "target")
+
+static int enter(void **state) {
+    if (small_inputs_enter_without_gnuplot(state) != 0)
+        return -1;
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "truth");
+    run_program_assert_code(&result, 0);
+    return 0;
+}
+
+/// target.json with the method before its first key, as target/run.json.
+static void write_run(const char *from, const char *to) {
+    static char text[1 << 14], all[1 << 15];
+    FILE *const file = fopen("target/target.json", "r");
+    assert_non_null(file);
+    const size_t length = fread(text, 1, sizeof text - 1, file);
+    fclose(file);
+    text[length] = '\0';
+    snprintf(all, sizeof all, "%s%s", method, strchr(text, '{') + 1);
+    char *const at = from ? strstr(all, from) : NULL;
+    FILE *const run = fopen("target/run.json", "w");
+    assert_non_null(run);
+    if (at)
+        fprintf(run, "%.*s%s%s", (int)(at - all), all, to, at + strlen(from));
+    else
+        fputs(all, run);
+    fclose(run);
+}
+
+static double soft(double r, double a) {
+    return r < 1 ? 0.5 * a * (1 - r) * (1 - r) : 0;
+}
+
+static double truth_of(int n, double q) {
+    const double angle = (q - 110) * M_PI / 180, turn = cos((q - 180) * M_PI / 180);
+    switch (n) {
+    case 0:
+        return soft(q, 20);
+    case 1:
+        return soft(q, 12);
+    case 2:
+        return soft(q, 25);
+    case 3:
+        return 50 * (q - 0.6) * (q - 0.6);
+    case 4:
+        return 6 * angle * angle;
+    default:
+        return turn + 1.5 * turn * turn;
+    }
+}
+
+/// rms of what is off over its error, and of what is off [kJ/mol]; U is 0 where it is least.
+static void compare(int n, const char *file, size_t error_column, double *z, double *off) {
+    struct data_table table;
+    double least = 0, sum = 0, squares = 0, count = 0;
+    assert_ok(mf_data_table_read(&table, file, 2));
+    for (int pass = 0; pass < 2; pass++)
+        for (size_t k = 0; k < table.rows; k++) {
+            const double *const row = table.values + k * table.columns;
+            const double error = row[error_column];
+            if (!(error > 1e-9)) // where U is 0
+                continue;
+            const double difference = row[1] - truth_of(n, row[0]);
+            if (pass == 0 && n >= 3)
+                least = row[1] < 1e-9 ? difference : least;
+            if (pass == 0)
+                continue;
+            sum += pow((difference - least) / error, 2);
+            squares += pow(difference - least, 2);
+            count++;
+        }
+    assert_true(count > 10);
+    *z = sqrt(sum / count);
+    *off = sqrt(squares / count);
+    mf_data_table_clear(&table);
+}
+
+static void test_chains_come_back_with_all_their_terms(void **state) {
+    static const char *const file[] = {"out/potential_A-A.tsv", "out/potential_A-B.tsv",
+                                       "out/potential_B-B.tsv", "out/bonds_backbone.tsv",
+                                       "out/angles_bend.tsv",   "out/dihedrals_twist.tsv"};
+    (void)state;
+    MEASURE(DUMP, "--molecules", "scene.json", "--forces", "1.2");
+    run_program_assert_code(&result, 0);
+    write_run(NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "finished after 1 iterations");
+    assert_contains(result.err, "100.0 % of the mean square of the forces is that of these "
+                                "potentials; g(r) was not fitted");
+    assert_contains(result.err, "verified: rms of rdf - target");
+    for (int n = 0; n < 6; n++) {
+        double z, off;
+        compare(n, file[n], n < 3 ? 3 : 2, &z, &off);
+        print_message("%s: rms z %.2f, off %.2g kJ/mol\n", file[n], z, off);
+        assert_true(z < 1.3);
+        assert_true(off < 0.01);
+    }
+}
+
+static void assert_measure_refused(const char *part) {
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, part);
+}
+
+/// Two atoms of types A and B in frames of a dump of LAMMPS.
+static void write_dump(struct temporary_folder *folder, int frames, const char *columns,
+                       const char *a, const char *b) {
+    static char text[1 << 14];
+    size_t length = 0;
+    for (int t = 0; t < frames; t++)
+        length += (size_t)snprintf(text + length, sizeof text - length,
+                                   "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS "
+                                   "pp pp pp\n0 30\n0 30\n0 30\nITEM: ATOMS id element mass x y z "
+                                   "%s\n1 Ar 40 1 2 %d %s\n2 Xe 131 5 2 3 %s\n3 Ar 40 9 5 1 %s\n",
+                                   t, columns, t, a, b, a);
+    temporary_folder_write(folder, "a.dump", text, length);
+}
+
+static void measure_dump(void) {
+    MEASURE("a.dump", "--file-units", "real", "--forces", "1");
+}
+
+static void test_forces_that_cannot_be_matched_are_said(void **state) {
+    write_dump(*state, 12, "", "", "");
+    measure_dump();
+    assert_measure_refused("a.dump: has no forces, which --forces needs: of GROMACS a .trr");
+    write_dump(*state, 12, "fx fy fz", "0 0 0", "0 0 0");
+    measure_dump();
+    assert_measure_refused("a.dump: frame 0: all forces are 0: --forces needs those of the");
+    write_dump(*state, 12, "fx fy fz", "1 2 3", "0 0 0");
+    measure_dump();
+    assert_measure_refused("a.dump: frame 0: the forces of all beads \"Xe\" are 0");
+    write_dump(*state, 2, "fx fy fz", "1 2 3", "2 1 0");
+    measure_dump();
+    assert_measure_refused("a.dump: 2 frames with forces tell no errors: --forces needs 8 or more");
+    write_dump(*state, 12, "fx fy fz", "1 2 x", "2 1 0");
+    measure_dump();
+    assert_measure_refused("a.dump:10: frame 0: a force is not a finite number");
+    write_dump(*state, 12, "fx fy fz", "1 2 3", "2 1 0");
+    MEASURE("a.dump", "--file-units", "real", "--forces", "1.6");
+    assert_measure_refused("the range of --forces");
+    MEASURE("a.dump", "--file-units", "real", "--forces", "-1");
+    assert_measure_refused("--forces takes a number above 0");
+}
+
+static void test_a_fit_without_the_forces_is_refused(void **state) {
+    (void)state;
+    MEASURE(DUMP, "--molecules", "scene.json");
+    run_program_assert_code(&result, 0);
+    write_run(NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_measure_refused("\"force-matching\" needs the forces of a trajectory: \"mesofit measure "
+                           "--forces R\" keeps them");
+    MEASURE(DUMP, "--molecules", "scene.json", "--forces", "1.2");
+    write_run("forces_gram.tsv", "rdf_A-A.tsv");
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_measure_refused("rdf_A-A.tsv: its rows and columns are not those of the other file");
+    write_run("\"forces.tsv\"", "\"rdf_A-A.tsv\"");
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_measure_refused("rdf_A-A.tsv: its heading does not fit its rows and columns");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_chains_come_back_with_all_their_terms),
+        cmocka_unit_test(test_forces_that_cannot_be_matched_are_said),
+        cmocka_unit_test(test_a_fit_without_the_forces_is_refused),
+    };
+    return cmocka_run_group_tests(tests, enter, small_inputs_leave);
+}
