@@ -31,8 +31,8 @@ static const struct inner run_objects[] = {
     {"engine", "another program that samples for an inversion", "engine", TOPIC_ONE},
     {"verification", "independent simulations of the result", "verification", TOPIC_ONE},
     {"states",
-     "systems that share a potential, {\"dilute\": {\"scene\": {…}, …}, …}, with this file's keys "
-     "unless they have their own",
+     "systems that share a potential, {\"dilute\": {\"scene\": {…}, …}, …}, else with this file's "
+     "keys",
      "run", TOPIC_NAMED},
     {NULL, NULL, NULL, TOPIC_ONE},
 };
@@ -217,6 +217,8 @@ static size_t add_target_topics(struct topic *topics, size_t n) {
         topics[n] = (struct topic){"target", (*record)->topic, (*record)->summary, {NULL}};
         memcpy(topics[n++].tables, (*record)->fields, sizeof(*record)->fields);
     }
+    topics[n++] = (struct topic){
+        "target", "forces-target", "\"forces\", of `measure --forces`", {mf_target_forces_fields}};
     return n;
 }
 
@@ -325,7 +327,7 @@ static size_t add_targets(struct topic_object *objects, size_t n) {
         n = add_object(objects, n, found.target->name, found.target->summary,
                        mf_target_record(kind)->topic, TOPIC_PARTS);
     }
-    return n;
+    return add_object(objects, n, "forces", "force matching", "forces-target", TOPIC_ONE);
 }
 
 size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRIBE_MAX_OBJECTS]) {

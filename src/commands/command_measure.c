@@ -52,8 +52,7 @@ static const struct command_option options[] = {
     [WEIGHTED] =
         {"--weighted-density", "R0,RC[,END]",
          "density around each bead, by a weight from 1 at r_0 to 0 at r_c [nm]; 200 bins to END"},
-    [FORCES] = {"--forces", "R",
-                "the forces of the frames, for \"force-matching\" of pairs up to R [nm]"},
+    [FORCES] = {"--forces", "R", "for force-matching: of pairs up to R [nm]"},
     [WINDOW] = {"--window", "T",
                 "window of MSD, VACF, escape times [ps]; else a tenth, at most 100 frames"},
     [ESCAPE] = {"--escape", "R",

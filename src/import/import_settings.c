@@ -187,12 +187,12 @@ static enum status read_interactions(struct import_settings *settings,
     }
     if (settings->pairs > 0)
         return STATUS_OK;
-    return mf_xml_fail(&settings->document, root,
-                       "no <non-bonded> has a target, <inverse><target>%s",
-                       mf_xml_find(root, "non-bonded.fmatch") ? ": force matching is not here"
-                       : mf_xml_find(root, "inverse")
-                           ? ""
-                           : ": what csg_stat does by these, mesofit measure does by itself");
+    return mf_xml_fail(
+        &settings->document, root, "no <non-bonded> has a target, <inverse><target>%s",
+        mf_xml_find(root, "non-bonded.fmatch") ? ": force matching is by \"measure --forces\""
+        : mf_xml_find(root, "inverse")
+            ? ""
+            : ": what csg_stat does by these, mesofit measure does by itself");
 }
 
 static bool has_pair(const struct import_settings *settings, const char *first,

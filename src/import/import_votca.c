@@ -70,9 +70,9 @@ static const struct {
     {"inverse.optimizer", "potentials are tables; laws with parameters: \"unknowns\""},
     {"non-bonded.re", "potentials are tables; splines: \"method\": {\"name\": "
                       "\"relative-entropy\"}"},
-    {"non-bonded.fmatch", "force matching is not here"},
-    {"bonded.fmatch", "force matching is not here"},
-    {"fmatch", "force matching is not here"},
+    {"non-bonded.fmatch", "force matching is by \"measure --forces\""},
+    {"bonded.fmatch", "force matching is by \"measure --forces\""},
+    {"fmatch", "force matching is by \"measure --forces\""},
     {"non-bonded.inverse", "no other program runs in between"},
     {"bonded.inverse", "no other program runs in between"},
     {"inverse", "no other program runs in between"},

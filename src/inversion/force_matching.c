@@ -61,7 +61,7 @@ static enum status find_group(const struct inverse_problem *problem,
 }
 
 /// ∫ of the force of a curve, and its standard error: of the forces, and of straight lines between
-/// their nodes.
+/// their nodes, of which the difference is about three.
 static double integrate(const struct reading *from, const struct force_curve *curve, double begin,
                         double end, double *error) {
     const struct force_solution *const s = from->solution;
@@ -77,7 +77,7 @@ static double integrate(const struct reading *from, const struct force_curve *cu
         coarse += from->weight[k] * s->coarse[k];
         variance += from->weight[k] * sum;
     }
-    *error = hypot(sqrt(fmax(0, variance)), (coarse - value) / 3);
+    *error = hypot(sqrt(fmax(0, variance)), (coarse - value) / 2);
     return value;
 }
 
@@ -219,7 +219,7 @@ static size_t spans(void *memory, struct memory_span *span) {
 
 const struct inverse_method mf_force_matching = {
     .name = "force-matching",
-    .summary = "least squares of the forces of a trajectory; S. Izvekov and G. A. Voth, J. Phys. "
+    .summary = "least squares of forces; S. Izvekov and G. A. Voth, J. Phys. "
                "Chem. B 109, 2469 (2005)",
     .kind = INVERSE_DIRECT,
     .tables = (const struct inverse_table[]){{NULL, 0, NULL}},

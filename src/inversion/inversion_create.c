@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const char *const starts[] = {"auto", "mean-force", NULL};
+static const char *const starts[] = {"auto", "mean-force", "forces", NULL};
 
 #define MEMBER(name) .offset = offsetof(struct inversion_parameters, name)
 const struct field mf_inversion_fields[] = {
@@ -14,30 +14,26 @@ const struct field mf_inversion_fields[] = {
      .unit = "", .help = "particles at the scene's density; 0: the scene's"},
     {"sampler", FIELD_CHOICE, MEMBER(sampler), .choices = mf_sampler_kinds, .initial = SAMPLER_AUTO,
      .unit = "",
-     .help = "Metropolis moves or hybrid Monte Carlo; auto: moves of single beads, hybrid of "
-             "molecules and with \"many_body\""},
+     .help = "auto: Metropolis moves of single beads, hybrid Monte Carlo of molecules and "
+             "\"many_body\""},
     {"replicas", FIELD_INTEGER, MEMBER(replicas), .initial = 8, .minimum = 2,
      .maximum = REPLICAS_MAX, .unit = "", .help = "independent samplers"},
     {"equilibration", FIELD_INTEGER, MEMBER(equilibration), .initial = 64, .minimum = 0,
-     .maximum = 8e8, .unit = "sweeps",
-     .help = "least equilibration, two-fold from a random start; prolonged until samples are "
-             "stationary"},
+     .maximum = 8e8, .unit = "sweeps", .help = "least equilibration; prolonged until stationary"},
     {"samples", FIELD_INTEGER, MEMBER(samples), .initial = 64, .minimum = 2 * REPLICAS_BLOCKS,
      .maximum = 1e9, .unit = "",
-     .help = "least samples of each replica; doubled until the noise is \"precision\" or half "
-             "of the error"},
+     .help = "least samples of each replica; doubled until exact enough"},
     {"every", FIELD_INTEGER, MEMBER(every), .initial = 2, .minimum = 1, .maximum = 1e6,
      .unit = "sweeps", .help = "least interval between samples"},
     {"iterations", FIELD_INTEGER, MEMBER(iterations), .initial = 30, .minimum = 1, .maximum = 10000,
      .unit = "", .help = "most iterations"},
     {"precision", FIELD_NUMBER, MEMBER(precision), .initial = 0.004, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "",
-     .help = "statistical error of g, rms over bins, needed for convergence; bins whose target is "
-             "noisier bear as much more"},
+     .help = "statistical error of g, rms over bins, needed for convergence"},
     {"damping", FIELD_NUMBER, MEMBER(damping), .initial = 1, .minimum = FIELD_ABOVE_ZERO,
      .maximum = 1, .unit = "", .help = "part of each step that is taken"},
     {"start", FIELD_CHOICE, MEMBER(start), .choices = starts, .initial = INVERSION_FROM_HNC,
-     .unit = "", .help = "start without unknowns.potential.start; auto: as \"base\" there"},
+     .unit = "", .help = "without unknowns.potential.start; auto: as \"base\" there"},
     FIELD_END,
 };
 

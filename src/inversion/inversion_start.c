@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
+#include "inversion/force_matching.h"
 #include "inversion/inversion_intramolecular.h"
 
 #include <math.h>
@@ -124,7 +125,19 @@ enum status mf_inversion_reference(struct inversion_state *state, double *phi) {
     return smooth(state, phi);
 }
 
+/// What the forces of the target's trajectory say.
+static enum status start_from_forces(const struct inversion_state *state, double *phi) {
+    struct force_potentials found;
+    if (state->problem->forces == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "method.start: \"forces\" needs a target that "
+                                                "\"mesofit measure --forces R\" has made");
+    TRY(mf_force_matching_find(state->problem, &state->grid, phi, NULL, &found));
+    return restrict_to_basis(state, phi);
+}
+
 enum status mf_inversion_start(struct inversion_state *state, double *phi) {
+    if (state->parameters->start == INVERSION_FROM_FORCES && !has_own(state))
+        return start_from_forces(state, phi);
     if (!is_from_hnc(state))
         return mf_inversion_start_again(state, phi);
     TRY(mf_inversion_reference(state, phi));

@@ -32,7 +32,7 @@ struct inversion_parameters {
     int sampler;    ///< enum sampler_kind
 };
 
-enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE };
+enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE, INVERSION_FROM_FORCES };
 
 /// What its targets ask of S: the number of pairs in a bin of g(r), or of terms in a bin of a
 /// group, in one sample; S* is what it should be. Shape [bins] each.

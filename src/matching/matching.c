@@ -81,9 +81,7 @@ static const struct field own_fields[] = {
      .help = "try the optimum of a linear model, too; join: add it to the genetic population"},
     {"agreements", FIELD_INTEGER, MEMBER(agreements), .initial = 8, .minimum = 0, .maximum = 1e6,
      .unit = "",
-     .help =
-         "measurements of the best that agree with the targets but for their noise, which end the "
-         "fit; 0: none"},
+     .help = "measurements of the best within noise of the targets that end the fit; 0: none"},
     FIELD_END,
 };
 

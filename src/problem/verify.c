@@ -27,7 +27,7 @@ const struct field mf_verify_fields[] = {
      .unit = "tau", .help = "time step; 0: the scene's"},
     {"shorten_time_step", FIELD_CHOICE, MEMBER(shorten), .choices = no_or_yes, .initial = 0,
      .unit = "",
-     .help = "halve the time step until kinetic and configurational temperature agree within 1 %; "
+     .help = "halve the time step until both temperatures agree within 1 %; "
              "default yes if the file has none"},
     {"equilibration", FIELD_INTEGER, MEMBER(plan.equilibration), .initial = 1000, .minimum = 0,
      .maximum = 1e12, .unit = "steps", .help = "interval before the first sample"},
@@ -35,7 +35,7 @@ const struct field mf_verify_fields[] = {
      .unit = "", .help = "samples of each replica"},
     {"end_early", FIELD_CHOICE, MEMBER(end_early), .choices = no_or_yes, .initial = 0, .unit = "",
      .help = "end when differences from targets are known within a tenth, T within 0.3 %; default "
-             "yes where the program chooses the samples"},
+             "yes where samples are chosen"},
     {"every", FIELD_INTEGER, MEMBER(plan.every), .initial = 25, .minimum = 1, .maximum = 1e9,
      .unit = "steps", .help = "interval between samples"},
     FIELD_END,

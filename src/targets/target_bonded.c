@@ -35,7 +35,7 @@ const struct field mf_target_bonded_fields[] = {
              "as the group with \"_error\", or 3, else 0"},
     {"errors_of", FIELD_CHOICE, MEMBER(errors_of), .choices = mf_targets_errors,
      .initial = TARGET_ERRORS_UNKNOWN, .unit = "",
-     .help = "samples: of a simulation (neighbouring bins scatter together); bins: independent, "
+     .help = "samples: of a simulation; bins: independent, "
              "as of a figure; unknown: the larger"},
     FIELD_END,
 };

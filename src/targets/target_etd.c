@@ -25,7 +25,7 @@ static const struct field etd_fields[] = {
      .unit = "lambda", .help = "lower edge of the first bin"},
     {"r_maximum", FIELD_NUMBER, MEMBER(r_maximum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda",
-     .help = "upper edge of the last bin, at which a pair has escaped; 0: edges from column names "
+     .help = "upper edge of the last bin; 0: edges from column names "
              "as \"E(r0=0.51)\""},
     FIELD_END,
 };

@@ -3,10 +3,9 @@
 
 #define MEMBER(name) .offset = offsetof(struct target_forces_files, name)
 const struct field mf_target_forces_fields[] = {
-    {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "",
-     .help = "forces.tsv of \"measure --forces\""},
+    {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "", .help = "forces.tsv"},
     {"gram_file", FIELD_FILE, MEMBER(gram_file), .required = true, .unit = "",
-     .help = "its forces_gram.tsv"},
+     .help = "forces_gram.tsv"},
     FIELD_END,
 };
 

@@ -14,8 +14,7 @@ struct target_kirkwood_buff_number {
 static const struct field number_fields[] = {
     {"value", FIELD_NUMBER, NUMBER(value), .required = true, .minimum = -DBL_MAX,
      .maximum = DBL_MAX, .unit = "lambda^d",
-     .help = "integral of g - 1 over all space, of the open system; in a mixture an object for "
-             "each pair of components, as \"A-B\""},
+     .help = "integral of g - 1 over all space; of a mixture by pairs of components, as \"A-B\""},
     {"error", FIELD_NUMBER, NUMBER(error), .required = true, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "lambda^d", .help = "standard error"},
     FIELD_END,

@@ -33,9 +33,7 @@ const struct field mf_target_rdf_fields[] = {
      .help = "column of errors; 0, or nan: from the scatter; -1: 3 "
              "if present, else 0"},
     {"bin_width", FIELD_NUMBER, MEMBER(bin_width), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
-     .unit = "lambda",
-     .help = "width to which bins are merged; 0: the file's; without "
-             "\"method\" chosen by noise and structure"},
+     .unit = "lambda", .help = "width to which bins are merged; 0: the file's, or chosen"},
     {"particles", FIELD_INTEGER, MEMBER(particles), .initial = 0, .minimum = 0, .maximum = 1e9,
      .unit = "",
      .help = "number of particles in the measured system, to correct the normalisation; 0: the "
@@ -48,7 +46,7 @@ const struct field mf_target_rdf_fields[] = {
      .help = "prior standard deviation of an estimated normalisation from 1"},
     {"errors_of", FIELD_CHOICE, MEMBER(errors_of), .choices = mf_targets_errors,
      .initial = TARGET_ERRORS_UNKNOWN, .unit = "",
-     .help = "samples: of a simulation (neighbouring bins scatter together); bins: independent, "
+     .help = "samples: of a simulation; bins: independent, "
              "as of a figure; unknown: the larger"},
     FIELD_END,
 };

@@ -184,6 +184,11 @@ static void print_interval(struct run *run, size_t count) {
 /// What frames that are read again would tell again.
 static void tell_first(struct run *run, size_t count) {
     print_interval(run, count);
+    if (run->request->measured.force_cutoff > 0 && run->mapping.broken)
+        mf_progress_print(&run->progress,
+                          "mesofit: warning: --forces: beads are parts of their residues: bonds of "
+                          "fixed length between them make their forces wrong; simulate the atoms "
+                          "without constraints");
     mf_measure_doubts(&run->progress, run->frames.frame, run->mapping.beads,
                       run->request->frames.options.units);
     run->told = true;
