@@ -180,7 +180,7 @@ struct inverse_problem {
     struct simulation_setup scene;           ///< all but the unknowns; its composition is set
     double core_threshold;                   ///< g* beyond the core is above this, and two errors
     double core_stiffness;                   ///< of the core (mf_core_fill) [k_B T_0/λ²]
-    const struct force_equations *forces; ///< of a trajectory; NULL: none
+    const struct force_equations *forces;    ///< of a trajectory; NULL: none
     const struct sampling_engine *engine;    ///< samples in the place of ours; NULL: none
     uint64_t seed;
     int threads;
