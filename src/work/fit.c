@@ -278,9 +278,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         TRY(run->fit.method->write(run->state, &own));
     TRY(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     mf_progress_report_written(&run->progress);
-    mf_progress_print(&run->progress, "iteration %u  error %.4f  noise %.4f  %.1f s",
-                      step->iteration, mf_visible_number(step->error),
-                      mf_visible_number(step->noise), run->standing.time.seconds);
+    mf_fit_print_step(step, run->standing.time.seconds, &run->progress);
     if (step->begins)
         mf_progress_print(&run->progress, "%s", step->begins);
     TRY(mf_fit_checkpoint_begin(&run->checkpoint));

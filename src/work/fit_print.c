@@ -3,6 +3,7 @@
 
 #include "dynamics/hybrid_step.h"
 #include "dynamics/respa.h"
+#include "base/visible.h"
 #include "defaults/fit_engine.h"
 #include "defaults/fit_scales.h"
 #include "observe/stages.h"
@@ -146,6 +147,14 @@ enum status mf_fit_print_targets(struct progress *to, const struct fit_file *fit
 /// No fit is without an error: 0 is what nobody has set yet.
 static bool is_known(double error) {
     return isfinite(error) && error > 0;
+}
+
+void mf_fit_print_step(const struct inverse_step *step, double seconds, struct progress *progress) {
+    if (isfinite(step->error))
+        mf_progress_print(progress, "iteration %u  error %.4f  noise %.4f  %.1f s", step->iteration,
+                          mf_visible_number(step->error), mf_visible_number(step->noise), seconds);
+    else
+        mf_progress_print(progress, "iteration %u  %.1f s", step->iteration, seconds);
 }
 
 void mf_fit_print_iteration(const struct inverse_progress *now, const struct units *units,

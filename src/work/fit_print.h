@@ -9,6 +9,9 @@
 
 enum { FIT_TELL_SIZE = 192 };
 
+/// An iteration that has ended, with the error of a method that has one.
+void mf_fit_print_step(const struct inverse_step *step, double seconds, struct progress *progress);
+
 /// Where an iteration is, in words for the line of its progress. Tested: test_fit_print.
 void mf_fit_print_iteration(const struct inverse_progress *now, const struct units *units,
                             char text[FIT_TELL_SIZE]);
