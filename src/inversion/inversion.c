@@ -45,7 +45,7 @@ enum status mf_inversion_observe(struct inversion *inversion,
         if (state->assessment.unequilibrated.found)
             state->pool.samples = 0;
         else
-            mf_inversion_pool(state, mf_inversion_is_on_its_way(inversion));
+            mf_inversion_pool(state, inversion->course.progress.on_its_way);
     }
     mf_inversion_states_assess(inversion->state, inversion->states, &inversion->assessment);
     return STATUS_OK;

@@ -181,7 +181,8 @@ static bool keeps_direction(double last, double before, double open) {
     return last * before > 0 && fabs(last) > least_drift * open;
 }
 
-bool mf_inversion_is_on_its_way(const struct inversion *inversion) {
+/// Whether the last two drifts near the targets keep one direction.
+static bool is_on_its_way(const struct inversion *inversion) {
     const struct inversion_band_drifts *last = &inversion->course.band.drifts;
     const struct inversion_drifts *drifts = &inversion->course.progress.drifts;
     if (drifts->near < 2 || !must_settle(inversion))
@@ -205,19 +206,22 @@ static void record_drifts(const struct inversion *inversion, struct inversion_dr
 }
 
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
-    struct inversion_drifts *drifts = &inversion->course.progress.drifts;
+    struct inversion_progress *const progress = &inversion->course.progress;
+    struct inversion_drifts *drifts = &progress->drifts;
+    progress->on_its_way = false;
     if (!kept) // it goes back to the one before
         return false;
-    const bool meets = inversion->course.progress.best.precise && meets_targets(inversion);
+    const bool meets = progress->best.precise && meets_targets(inversion);
     if (!meets && !mf_inversion_is_near(inversion))
         drifts->near = drifts->met = 0;
     else
         record_drifts(inversion, drifts);
+    progress->on_its_way = is_on_its_way(inversion);
     if (!meets)
         return false;
     drifts->met++;
     const struct potential_grid *grid = inversion_grid(inversion);
     const uint32_t min = grid->groups > 0 ? MIN_MET_WITH_GROUPS : 1;
     const bool settled = drifts->met >= min && has_settled(inversion, min);
-    return !must_settle(inversion) || (settled && !mf_inversion_is_on_its_way(inversion));
+    return !must_settle(inversion) || (settled && !progress->on_its_way);
 }

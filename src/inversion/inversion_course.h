@@ -44,6 +44,8 @@ struct inversion_progress {
     double newton_failed_error; ///< of g, from where a step with another in reserve led away, or
                                 ///< the first
     struct inversion_drifts drifts;
+    bool on_its_way;   ///< the last two keep one direction: what earlier iterations ask for, moved
+                       ///< by a response that changes on the way, would hold the fit back
     bool second_start; ///< it began again, from −k_B T ln g
     bool lost;         ///< none of the starts settled
 };
@@ -134,11 +136,6 @@ enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 /// converged. Iterations that are not kept, or whose samples have not settled, do not count.
 /// Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
-
-/// Whether the last two drifts near the targets, of the ramp or of what it moves, keep one
-/// direction: the fit is on its way, and what earlier iterations ask for, moved by a response that
-/// changes on it, holds it back. Tested: test_inversion_converged.
-bool mf_inversion_is_on_its_way(const struct inversion *inversion);
 
 /// Find a stretch of a g(r) that is off by more than noise, though all of it may agree: few bins
 /// drown among the others, as those that few pairs reach among those of all shells. Of the excess

@@ -162,7 +162,7 @@ void mf_inversion_find_factor(const struct inversion_state *state, struct invers
 /// Approximation (2003), section 1.1. Present samples weigh a third at least, for what C does not
 /// tell. Tested: test_inversion_keeps.
 /// @param[in] alone  the present samples weigh all: the fit is on its way
-///                   (mf_inversion_is_on_its_way)
+///                   (inversion_progress.on_its_way)
 void mf_inversion_pool(struct inversion_state *state, bool alone);
 
 /// Whether g, and p of all groups, are so near to their targets, by their noise, that C hardly

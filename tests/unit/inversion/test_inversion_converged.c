@@ -64,7 +64,7 @@ static void test_fit_goes_on_while_its_drifts_keep_their_direction(void **state)
     for (size_t k = 0; k < sizeof drift / sizeof *drift; k++) {
         inversion->course.band.drifts.ramp.drift = drift[k];
         assert_false(mf_inversion_has_converged(inversion, true));
-        assert_true(mf_inversion_is_on_its_way(inversion) == (k > 0));
+        assert_true(inversion->course.progress.on_its_way == (k > 0));
     }
     struct inversion_drifts *const drifts = &inversion->course.progress.drifts;
     const struct inversion_drifts before = *drifts;
