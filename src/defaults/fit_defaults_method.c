@@ -108,7 +108,7 @@ static double choose_particles(const struct fit_choice *c) {
     static const double min = 700, margin = 2.15, distortion = 0.05;
     const struct inversion_parameters *given = said(c, "particles");
     if (given)
-        return (double)given->particles;
+        return given->particles > 0 ? (double)given->particles : c->count;
     const double wanted =
         ceil(fmax(min, c->density * pow(margin * fit_choice_reach(c), c->dimensions)));
     return (double)mf_composition_min_particles(c->rdf->composition, (int64_t)wanted, distortion);
@@ -258,7 +258,8 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
             c,
             "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "
             "their g is known within %.2g; the target's is within %.2g",
-            method->name, joined ? c->count : particles, c->precision, c->scales.noise);
+            method->name, joined && !said(c, "particles") ? c->count : particles, c->precision,
+            c->scales.noise);
         if (!joined)
             give_to_method(c, both ? "potential_particles" : "particles", particles);
         give_to_method(c, both ? "potential_precision" : "precision", c->precision);

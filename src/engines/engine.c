@@ -225,21 +225,32 @@ static enum status begin(void *context, const struct engine_piece *asked, void *
     return mf_engine_folder_remove(old);
 }
 
-/// A Slurm job in which the whole fit goes on, and which hands over to the next one.
+/// Words of a shell as one.
+static void print_quoted(const char *words, FILE *stream) {
+    fputc('\'', stream);
+    for (; *words; words++)
+        fprintf(stream, *words == '\'' ? "'\\''" : "%c", *words);
+    fputc('\'', stream);
+}
+
+/// A Slurm job in which the whole fit goes on, and which hands over to the next one when Slurm says
+/// that its time is nearly over.
 static void print_job(const void *fit, FILE *stream) {
     OWNED char *folder = realpath(fit, NULL);
+    fprintf(stream,
+            "#!/bin/sh\n#SBATCH --ntasks=64 --time=24:00:00 --signal=B:USR1@300\n"
+            "# sbatch slurm.sh RUN.json COMMAND: the fit goes on, COMMAND as of --engine, \"srun "
+            "lmp\"\n"
+            "run=$1 command=$2 out=");
+    print_quoted(folder ? folder : fit, stream);
     fprintf(
         stream,
-        "#!/bin/sh\n#SBATCH --ntasks=64 --time=24:00:00 --signal=B:USR1@300\n"
-        "# sbatch slurm.sh RUN.json COMMAND: the fit goes on, COMMAND as of --engine, \"srun "
-        "lmp\"\n"
-        "run=$1 command=$2 out='%s'\n"
-        "mesofit fit \"$run\" -o \"$out\" --engine \"$command\" --threads 1 --resume &\nfit=$!\n"
-        "trap 'kill -USR1 $fit' USR1 # of Slurm, before the time is over\n"
-        "wait $fit\ncode=$?\nwait $fit && code=0 # if it was the signal that ended the first\n"
-        "if grep -q '\"interrupted\"' \"$out/summary.json\" 2>/dev/null; then\n"
-        "    sbatch \"$out/engine/slurm.sh\" \"$run\" \"$command\"\nfi\nexit $code\n",
-        folder ? folder : (const char *)fit);
+        "\nmesofit fit \"$run\" -o \"$out\" --engine \"$command\" --threads 1 --resume &\nfit=$!\n"
+        "trap 'more=yes; kill -USR1 $fit' USR1 # of Slurm, before the time is over\n"
+        "more=\nwait $fit\ncode=$?\n"
+        "[ -z \"$more\" ] || { wait $fit; code=$?; } # the signal ended the first\n"
+        "if [ -n \"$more\" ] && [ $code = 0 ]; then\n"
+        "    sbatch \"$out/engine/slurm.sh\" \"$run\" \"$command\"\nfi\nexit $code\n");
 }
 
 static enum status write_job(const char *fit) {

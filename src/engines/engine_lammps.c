@@ -66,12 +66,14 @@ static enum status check_units(const struct engine_run *run, const struct lammps
     const bool real = mf_units_known(&run->fit->scene.units);
     if (input->units[0] == '\0' || strcmp(input->units, real ? "real" : "lj") == 0)
         return STATUS_OK;
+    const bool other = strcmp(input->units, real ? "lj" : "real") == 0;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: its units are %s where the run file %s: write `units %s` there, or "
-                          "%s the run file",
+                          "%s: its units are %s where the run file %s: write `units %s` there%s",
                           run->settings->input, input->units,
                           real ? "has \"units\"" : "has no \"units\"", real ? "real" : "lj",
-                          real ? "leave \"units\" out of" : "give \"units\" in");
+                          !other ? ""
+                          : real ? ", or leave \"units\" out of the run file"
+                                 : ", or give \"units\" in the run file");
 }
 
 /// The input of a user. What it says must not change while a fit goes on.

@@ -104,6 +104,8 @@ static enum status read_command(struct lammps_input *input, const char *folder, 
     }
     if (strcmp(word[0], "units") == 0 && words > 1)
         snprintf(input->units, sizeof input->units, "%s", strchr(word[1], '$') ? "" : word[1]);
+    if (strcmp(word[0], "read_restart") == 0 || strcmp(word[0], "if") == 0)
+        input->units[0] = '\0'; // there they may be set, too
     if (strcmp(word[0], "include") == 0 && words > 1) {
         input->has_interactions |= strcmp(word[1], "mesofit.lmp") == 0;
         input->has_run |= strcmp(word[1], "mesofit-run.lmp") == 0;

@@ -95,6 +95,7 @@ struct sampling {
     struct replicas_plan plan;
     struct inverse_progress progress;
     uint64_t sweeps;                        ///< of each replica
+    uint64_t waited;                        ///< those of them that were to settle
     double spent_before;                    ///< on samples, without these [s]
     int failures;                           ///< times that something drifted
     struct target_distance before[TARGETS]; ///< of the samples before, if there were any
@@ -104,6 +105,7 @@ struct sampling {
 /// to them.
 static bool section_is_far_beyond_drift(const struct inversion_state *state,
                                         const struct inversion_section *section) {
+    const double share = find_share(state, section);
     double squares = 0, seen = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = state->grid.known_bin[a];
@@ -111,7 +113,7 @@ static bool section_is_far_beyond_drift(const struct inversion_state *state,
             squares += mf_inversion_equilibrium_shift(&state->replicas, bin) / state->variance[a];
         seen += state->grid.seen[a];
     }
-    return squares < seen * section->misfit * pow(find_share(state, section), 2);
+    return share > 0 && squares < seen * section->misfit * share * share;
 }
 
 bool mf_inversion_is_far_beyond_drift(const struct inversion_state *state) {
@@ -129,28 +131,33 @@ static bool has_kept(const struct inversion *inversion) {
     return isfinite(inversion->course.progress.best.distance[TARGET_RDF].rms);
 }
 
-/// The sweeps of a replica after which samples that have not settled are given up. A step may lead
-/// to where nothing settles, as into two phases: half of it is tried when it has cost as much as
-/// all before it, so that where each potential is slow, the next one may cost twice that.
-static uint64_t find_most_sweeps(const struct sampling *sampling, uint64_t first) {
-    const struct inversion_state *state = sampling->state;
-    const uint64_t before = state->work.sweeps / (uint64_t)state->parameters->replicas;
-    const uint64_t most = MAX_TIMES * first, least = MIN_TIMES * first;
-    if (!has_kept(sampling->inversion))
-        return most;
-    return before < least ? least : before > most ? most : before;
+/// Whether nothing is left to step against: these may be the last samples.
+static bool is_reached(const struct inversion_state *state) {
+    for (int k = 0; k < state->assessment.sections; k++)
+        if (find_share(state, &state->assessment.section[k]) > 0)
+            return false;
+    return true;
 }
 
 /// Whether samples must settle before a step is made of them. Where sizes of molecules alone
 /// remember, while g(r), lengths and angles do not, they are no worse than their replicas' scatter
 /// says, and do for a step; not for the last one.
 static bool waits(const struct inversion_state *state) {
-    const struct inversion_assessment *assessment = &state->assessment;
-    bool agrees = true;
-    for (int k = 0; k < assessment->sections; k++)
-        agrees = agrees && inversion_section_agrees(&assessment->section[k]);
-    return assessment->unequilibrated.found && !mf_inversion_is_far_beyond_drift(state) &&
-           (assessment->unequilibrated.beside_sizes || agrees);
+    const struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
+    return unequilibrated->found && !mf_inversion_is_far_beyond_drift(state) &&
+           (unequilibrated->beside_sizes || is_reached(state));
+}
+
+/// Whether samples that have not settled have cost too much. A step may lead to where nothing
+/// settles, as into two phases: half of it is tried when to wait has cost as much as all before it,
+/// so that where each potential is slow, the next one may cost twice that.
+static bool has_cost_enough(const struct sampling *sampling, uint64_t first) {
+    const struct inversion_state *state = sampling->state;
+    const uint64_t before = state->work.sweeps / (uint64_t)state->parameters->replicas;
+    const uint64_t least = MIN_TIMES * first;
+    return sampling->sweeps > MAX_TIMES * first ||
+           (has_kept(sampling->inversion) && !is_reached(state) &&
+            sampling->waited > (before > least ? before : least));
 }
 
 /// Whether samples that have not settled are given up: they have cost enough; they are those of a
@@ -172,7 +179,7 @@ static bool is_hopeless(struct sampling *sampling) {
     const bool worse = sampling->state->basis.count == 0 && farther && lost;
     const bool poor = other && inversion->course.progress.iteration == 0 &&
                       mf_inversion_start_is_under_tension(sampling->state, assessment);
-    assessment->unequilibrated.for_long = sampling->sweeps > find_most_sweeps(sampling, first);
+    assessment->unequilibrated.for_long = has_cost_enough(sampling, first);
     memcpy(sampling->before, assessment->distance, sizeof sampling->before);
     return assessment->unequilibrated.for_long || worse || poor;
 }
@@ -223,14 +230,17 @@ static enum status sample_all(struct sampling *sampling) {
     TRY(take(sampling, false));
     sampling->progress.done = sampling->progress.total = (uint64_t)state->parameters->replicas;
     for (;;) {
+        const uint64_t before = sampling->sweeps;
         if (waits(state) && is_hopeless(sampling))
             return STATUS_OK;
-        if (waits(state))
+        if (waits(state)) {
             TRY(settle(sampling));
-        else if (needs_samples(state, &sampling->progress.doubling))
+            sampling->waited += sampling->sweeps - before;
+        } else if (needs_samples(state, &sampling->progress.doubling)) {
             TRY(take(sampling, true));
-        else
+        } else {
             return STATUS_OK;
+        }
     }
 }
 

@@ -14,7 +14,7 @@ static double passing_speed(const struct simulation_setup *setup) {
 }
 
 struct bound_pairs mf_bound_pairs_find(const struct simulation_setup *setup, int pair) {
-    struct bound_pairs found = {0, 0};
+    struct bound_pairs found = {0};
     if (setup->potential == NULL || !simulation_has_velocities(setup) ||
         setup->integrator->samples || setup->integrator->events)
         return found;
@@ -32,7 +32,7 @@ struct bound_pairs mf_bound_pairs_find(const struct simulation_setup *setup, int
         lowest = fmin(lowest, energy);
         before = energy;
         if (stay / speed > found.lifetime)
-            found = (struct bound_pairs){stay / speed, energy - lowest};
+            found = (struct bound_pairs){stay / speed, energy - lowest, k * width};
     }
     return found;
 }

@@ -15,6 +15,7 @@
 struct bound_pairs {
     double lifetime; ///< [τ]; 0 where no time is known, as in Monte Carlo, or no potential acts
     double depth;    ///< of the well, from its bottom to b [k_B T]
+    double edge;     ///< b [λ]
 };
 
 /// Tested: test_bound_pairs.

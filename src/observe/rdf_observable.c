@@ -211,12 +211,24 @@ static enum status write(const void *state, const struct observable_results *res
     return STATUS_OK;
 }
 
+/// Whether pairs of a type were within a distance: nobody may be in a well behind a high barrier.
+static bool were_within(const struct rdf *rdf, size_t pair, double distance) {
+    const size_t bins = rdf->bins.count;
+    bool were = false;
+    for (size_t row = pair; row < rdf->blocks * rdf->pairs; row += rdf->pairs)
+        for (size_t k = 0; k < bins && mf_rdf_bins_centre(&rdf->bins, k) < distance; k++)
+            were = were || rdf->histogram[row * bins + k] > 0;
+    return were;
+}
+
 /// Whether the samples are long beside the time that pairs of a type stay together.
-static enum status assess_binding(const struct simulation_setup *setup, int pair, double time) {
+static enum status assess_binding(const struct simulation_setup *setup, const struct rdf *rdf,
+                                  int pair, double time) {
     static const double deep = 3, enough = 10;
     const struct bound_pairs bound = mf_bound_pairs_find(setup, pair);
     char name[COMPOSITION_PAIR_NAME_SIZE];
-    if (bound.depth < deep || time >= enough * bound.lifetime)
+    if (!(bound.depth >= deep) || time >= enough * bound.lifetime ||
+        !were_within(rdf, (size_t)pair, bound.edge))
         return STATUS_OK;
     mf_composition_pair_name(&setup->composition, pair, name);
     return mf_status_fail(STATUS_UNCONVERGED,
@@ -243,7 +255,7 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     }
     // A trajectory tells no potential.
     for (int pair = 0; setup && pair < mf_composition_pairs(&setup->composition); pair++)
-        TRY(assess_binding(setup, pair, observed->time));
+        TRY(assess_binding(setup, rdf, pair, observed->time));
     return STATUS_OK;
 }
 

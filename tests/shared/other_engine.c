@@ -5,11 +5,13 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 bool other_engine_runs(const char *program) {
     char command[128];
     snprintf(command, sizeof command, "command -v %s >/dev/null", program);
-    const bool wanted = getenv("ENGINES") != NULL, runs = wanted && system(command) == 0;
+    const char *const engines = getenv("ENGINES");
+    const bool wanted = engines && strcmp(engines, "1") == 0, runs = wanted && system(command) == 0;
     if (!wanted)
         print_message("skipped: ENGINES=1 runs it, by %s\n", program);
     else if (!runs)

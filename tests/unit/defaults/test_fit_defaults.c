@@ -266,7 +266,6 @@ static void test_fit_defaults_cut_g_at_half_of_a_box_that_is_given(void **state)
     mf_fit_file_clear(&fit);
 }
 
-/// Rows that are ten times finer than the gas asks for are joined, and its g ends where it is 1.
 /// A method without a name is chosen, and what the file says of it stays.
 static void test_fit_defaults_choose_a_method_beside_its_parameters(void **state) {
     struct fit_file fit, plain;
@@ -296,6 +295,7 @@ static void test_fit_defaults_choose_a_method_beside_its_parameters(void **state
     assert_non_null(strstr(mf_status_message(), "give the \"name\" of the method"));
 }
 
+/// Rows that are ten times finer than the gas asks for are joined, and its g ends where it is 1.
 static void test_fit_defaults_join_fine_rows_and_end_g_with_its_structure(void **state) {
     enum { ROWS = 1200, SIZE = 40 * ROWS };
     static const char none[] = "\"method\": {\"name\": \"ibi\"}, ";
