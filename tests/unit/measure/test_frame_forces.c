@@ -85,7 +85,7 @@ static double *find_all(const struct system *s) {
     double *all = calloc(s->frame.atoms * 3 * e->size, sizeof *all);
     for (size_t i = 0; i < s->frame.atoms; i++)
         for (size_t j = 0; j < s->frame.atoms; j++) {
-            double way[3];
+            double way[3] = {0};
             if (i == j)
                 continue;
             find_way(s, i, j, way);
