@@ -301,7 +301,8 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
             range: float | None = None, bins: int | None = None, q_range: float | None = None,
             waves: int | None = None, density_profile: str | None = None,
             profile_bins: int | None = None,
-            weighted_density: tuple[float, ...] | None = None, window: float | None = None,
+            weighted_density: tuple[float, ...] | None = None, forces: float | None = None,
+            window: float | None = None,
             escape: float | None = None, velocities: str | None = None, static: bool = False,
             temperature: float | None = None, units: str | None = None,
             allow_truncated: bool = False, file_units: str | None = None,
@@ -339,6 +340,8 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
     weighted_density : two or three floats, optional [nm, nm, 1]
         r_0 and r_c of the distribution of densities around each bead, by a weight from 1 to 0, and
         where its bins end, the same for all states that are fitted together.
+    forces : float, optional [nm]
+        Keep what "force-matching" needs, of pairs up to there, from the forces of a file.
     window : float, optional [ps]
         Of MSD, VACF and escape times; else a tenth of the time, 100 frames at most.
     escape : float, optional [nm]
@@ -383,8 +386,8 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         molecules=None if molecules is None else Path(_lend(molecules, {}, "molecules", memory)),
         begin=begin, end=end, every=every, range=range, bins=bins, q_range=q_range, waves=waves,
         density_profile=density_profile, profile_bins=profile_bins,
-        weighted_density=_list(weighted_density, "weighted_density"), window=window,
-        escape=escape, velocities=velocities, static=static, temperature=temperature,
+        weighted_density=_list(weighted_density, "weighted_density"), forces=forces,
+        window=window, escape=escape, velocities=velocities, static=static, temperature=temperature,
         units=units, allow_truncated=allow_truncated, file_units=file_units,
         file_time_step=file_time_step, file_group=file_group,
         box=_list(box, "box"),

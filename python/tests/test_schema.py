@@ -115,7 +115,9 @@ def test_methods_share_few_keys(schema, run):
         "['method']: Additional properties are not allowed ('crossover' was unexpected)")
     assert "['method', 'crossover']: 3 is greater" in with_method(name="genetic", crossover=3)
     assert "'magic' is not one of ['auto', 'imc'" in with_method(name="magic")
-    assert "'name' is a required property" in with_method(crossover=0.5)
+    # Without a name it is chosen, and has the keys of an inversion.
+    assert with_method(precision=0.05) == ""
+    assert "'crossover' was unexpected" in with_method(crossover=0.5)
 
 
 def bad_runs():

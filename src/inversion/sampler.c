@@ -199,7 +199,7 @@ static double sum_waves(const struct particles *particles, const struct composit
 
 enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *sample) {
     const size_t bins = pair_histogram_size(&sampler->bins) - 1;
-    struct sampler_pairs pairs;
+    struct sampler_pairs pairs = {0};
     TRY(sampler->source->run(sampler->own, sweeps, &pairs));
     const double weight = mf_box_volume(&mf_sampler_particles(sampler)->box) / sampler->volume;
     for (size_t a = 0; a < bins; a++)

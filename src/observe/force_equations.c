@@ -78,7 +78,7 @@ void mf_force_equations_add(struct force_equations *equations, const double *gra
 }
 
 void mf_force_equations_scale(struct force_equations *equations, double length, double energy) {
-    double factor[FORCES_MAX_NODES];
+    double factor[FORCES_MAX_NODES] = {0};
     for (size_t n = 0; n < equations->curves; n++) {
         struct force_curve *const curve = &equations->curve[n];
         const bool is_length =

@@ -152,8 +152,7 @@ static void test_samples_of_the_caller_find_a_known_potential(void **state) {
     snprintf(out, sizeof out, "%s", temporary_folder_file(folder, "out"));
     write_run(run);
     struct mesofit_inversion *inversion = mesofit_inversion_open(run, out, 0);
-    if (inversion == NULL)
-        fail_msg("%s", mesofit_message());
+    assert_non_null(inversion);
     assert_int_equal(mesofit_inversion_pieces(inversion), 4);
     assert_null(mesofit_inversion_piece(inversion, 4));
     const struct mesofit_samples none = {.positions = NULL};
