@@ -54,7 +54,7 @@ static void test_pairs_of_a_tilted_box_are_those_of_all_images(void **state) {
     static double shares[3][COUNT];
     double *share[3] = {shares[0], shares[1], shares[2]};
     struct fluid fluid;
-    struct pair_sums sums;
+    struct pair_sums sums = {0};
     double energy = 0, counts[3 * BINS] = {0};
     fluid_groot_warren(&fluid, COUNT, 0.02);
     const struct box_vectors box = make_box();
