@@ -87,7 +87,7 @@ static void test_states_have_the_same_pairs(void **state) {
     for (int k = 0; k < 60; k++) {
         const double r = 0.05 * k + 0.025;
         const size_t used = strlen(table);
-        snprintf(table + used, sizeof table - used, "%g %g 0.01\n", r, 1 - exp(-r * r));
+        snprintf(table + used, sizeof table - used, "%g %g 0.01\n", r, 1 - exp(-4 * r * r));
     }
     small_inputs_write(*state, "g.tsv", table, NULL, NULL);
     small_inputs_write(*state, "run.json", mixtures, NULL, NULL);
