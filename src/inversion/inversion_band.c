@@ -221,11 +221,19 @@ static void find_drifts(struct inversion *inversion, const double *step, const d
     inversion->course.band.ramp.bulk_drift = drifts->bulk[0].drift;
 }
 
-/// The way of A counts as an error: Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ.
+/// The way of A counts as an error, and near the targets so does that of the iteration before: as
+/// steps scatter, the last may be small by chance. Σ ← Σ + (A/σ_A²)² Σw (Σw)ᵀ with the rms A, if
+/// that is more.
 static void add_drift(struct inversion *inversion, const double *weight, double *scratch) {
+    const struct inversion_drifts *drifts = &inversion->course.progress.drifts;
     const double variance = spread(inversion, weight, scratch);
+    double square = pow(inversion->course.band.drifts.ramp.drift, 2);
+    if (drifts->near > 0)
+        square =
+            fmax(square,
+                 0.5 * (square + pow(drifts->ramp[(drifts->near - 1) % INVERSION_MAX_DRIFTS], 2)));
     if (variance > 0) // without pairs there is no ramp
-        add_square(inversion, pow(inversion->course.band.drifts.ramp.drift / variance, 2), scratch);
+        add_square(inversion, square / (variance * variance), scratch);
 }
 
 /// A pressure, or a density, with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) +
