@@ -285,6 +285,13 @@ static void test_fit_defaults_choose_a_method_beside_its_parameters(void **state
                  mf_rdf_bins_range(&plain.problem.targets.bins), 0);
     mf_fit_file_clear(&plain);
     mf_fit_file_clear(&fit);
+    // 0, as many as the scene has, is a number that the file gives.
+    assert_ok(read_run(state, &fit, "all.json",
+                       TARGET "\"scene\": {\"density\": 0.3, \"temperature\": 1}, \"method\": "
+                              "{\"particles\": 0}}"));
+    settings = fit.method_parameters;
+    assert_int_equal(settings->particles, 0);
+    mf_fit_file_clear(&fit);
     // To find omega an inversion is not the method.
     assert_int_equal(
         read_run(state, &fit, "both.json",
