@@ -155,6 +155,18 @@ static bool cancels(double sum, uint32_t count, const struct inversion_band_drif
     return fabs(sum) <= count * settled_drift * last->open;
 }
 
+/// Iterations that must meet the targets before a fit that must settle ends.
+static uint32_t least_met(const struct inversion *inversion) {
+    return inversion_grid(inversion)->groups > 0 ? MIN_MET_WITH_GROUPS : 1;
+}
+
+bool mf_inversion_may_end(const struct inversion *inversion) {
+    return ((const struct inversion_rule *)inversion->method->own)->memoryless ||
+           inversion_grid(inversion)->pairs == 0 || inversion->state->basis.count > 0 ||
+           mf_inversion_bulk_is_asked(inversion->state) ||
+           inversion->course.progress.drifts.met + 1 >= least_met(inversion);
+}
+
 /// Whether the drifts of the last iterations near the targets, `min` of them or more, cancel but
 /// for a part of their errors: each one has the noise of its samples, and what goes on goes on in
 /// one direction. Each state has a pressure of its own, and so a sum.
@@ -220,8 +232,7 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     if (!meets)
         return false;
     drifts->met++;
-    const struct potential_grid *grid = inversion_grid(inversion);
-    const uint32_t min = grid->groups > 0 ? MIN_MET_WITH_GROUPS : 1;
+    const uint32_t min = least_met(inversion);
     const bool settled = drifts->met >= min && has_settled(inversion, min);
     return !must_settle(inversion) || (settled && !progress->on_its_way);
 }

@@ -124,6 +124,10 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion);
 /// (mf_inversion_smooth). Fails: NO_MEMORY. Tested: test_inversion_keeps.
 enum status mf_inversion_take_last_step(struct inversion *inversion) MUST_USE;
 
+/// Whether the fit may end with the iteration that begins, if that meets the targets. Tested:
+/// test_inversion_converged.
+bool mf_inversion_may_end(const struct inversion *inversion);
+
 /// Whether this iteration, whose potential was kept or not, ends the fit: its samples are as exact
 /// as was asked for, agree with all targets, and leave no way that g hardly sees. The way has the
 /// noise of the samples: the mean of those of the last iterations near the targets may be half

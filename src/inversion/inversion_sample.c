@@ -131,21 +131,23 @@ static bool has_kept(const struct inversion *inversion) {
     return isfinite(inversion->course.progress.best.distance[TARGET_RDF].rms);
 }
 
-/// Whether nothing is left to step against: these may be the last samples.
-static bool is_reached(const struct inversion_state *state) {
+/// Whether these may be the last samples: nothing is left to step against.
+static bool may_be_last(const struct sampling *sampling) {
+    const struct inversion_state *state = sampling->state;
     for (int k = 0; k < state->assessment.sections; k++)
         if (find_share(state, &state->assessment.section[k]) > 0)
             return false;
-    return true;
+    return mf_inversion_may_end(sampling->inversion);
 }
 
 /// Whether samples must settle before a step is made of them. Where sizes of molecules alone
 /// remember, while g(r), lengths and angles do not, they are no worse than their replicas' scatter
 /// says, and do for a step; not for the last one.
-static bool waits(const struct inversion_state *state) {
+static bool waits(const struct sampling *sampling) {
+    const struct inversion_state *state = sampling->state;
     const struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
     return unequilibrated->found && !mf_inversion_is_far_beyond_drift(state) &&
-           (unequilibrated->beside_sizes || is_reached(state));
+           (unequilibrated->beside_sizes || may_be_last(sampling));
 }
 
 /// Whether samples that have not settled have cost too much. A step may lead to where nothing
@@ -156,7 +158,7 @@ static bool has_cost_enough(const struct sampling *sampling, uint64_t first) {
     const uint64_t before = state->work.sweeps / (uint64_t)state->parameters->replicas;
     const uint64_t least = MIN_TIMES * first;
     return sampling->sweeps > MAX_TIMES * first ||
-           (has_kept(sampling->inversion) && !is_reached(state) &&
+           (has_kept(sampling->inversion) && !may_be_last(sampling) &&
             sampling->waited > (before > least ? before : least));
 }
 
@@ -184,6 +186,12 @@ static bool is_hopeless(struct sampling *sampling) {
     return assessment->unequilibrated.for_long || worse || poor;
 }
 
+/// Whether samples that were given up do for a step: their replicas only remember, and scatter by
+/// it; none of them drifts, and halves that began apart have met.
+static bool does_for_step(const struct inversion_unequilibrated *unequilibrated) {
+    return unequilibrated->for_long && !unequilibrated->drifts && !unequilibrated->apart;
+}
+
 /// Take samples by the plan, all of them or as many again.
 static enum status take(struct sampling *sampling, bool again) {
     struct inversion_state *state = sampling->state;
@@ -207,6 +215,15 @@ static enum status take(struct sampling *sampling, bool again) {
     return STATUS_OK;
 }
 
+/// As many sweeps again: between the samples, where they are more than are independent, else by
+/// more of them.
+static void lengthen(struct sampling *sampling) {
+    if (sampling->state->inefficiency >= 2)
+        sampling->plan.every *= 2;
+    else
+        sampling->plan.block_samples *= 2;
+}
+
 /// Samples that drift, or whose halves are apart, were equilibration, and are taken again; those
 /// that only still remember their first configurations are too few, and doubled.
 static enum status settle(struct sampling *sampling) {
@@ -220,7 +237,7 @@ static enum status settle(struct sampling *sampling) {
     now->scatter = false;
     now->equilibration = sampling->state->parameters->equilibration * assessment->stretch;
     if (sampling->failures > 1)
-        now->every *= 2;
+        lengthen(sampling);
     return take(sampling, false);
 }
 
@@ -231,9 +248,9 @@ static enum status sample_all(struct sampling *sampling) {
     sampling->progress.done = sampling->progress.total = (uint64_t)state->parameters->replicas;
     for (;;) {
         const uint64_t before = sampling->sweeps;
-        if (waits(state) && is_hopeless(sampling))
+        if (waits(sampling) && is_hopeless(sampling))
             return STATUS_OK;
-        if (waits(state)) {
+        if (waits(sampling)) {
             TRY(settle(sampling));
             sampling->waited += sampling->sweeps - before;
         } else if (needs_samples(state, &sampling->progress.doubling)) {
@@ -275,7 +292,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     unequilibrated->sweeps = sampling.sweeps;
     state->work.memory = state->inefficiency * (double)sampling.plan.every;
     state->assessment.unstable = unstable;
-    state->assessment.useless = unstable || waits(state);
+    state->assessment.useless = unstable || (waits(&sampling) && !does_for_step(unequilibrated));
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

@@ -175,6 +175,35 @@ static void test_fit_with_groups_ends_at_once_where_nothing_must_settle(void **s
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
+/// Samples of an iteration that cannot be the last need not be as good as the last ones: whether it
+/// can is told before it, and the same as after it.
+static void test_fit_knows_before_an_iteration_whether_it_may_end(void **state) {
+    static const struct inversion_rule goes_on = {0}, forgets = {.memoryless = true};
+    static const struct inverse_method most_probable = {.own = &goes_on};
+    static const struct inverse_method memoryless = {.own = &forgets};
+    (void)state;
+    struct end end;
+    for (size_t groups = 0; groups < 2; groups++) {
+        struct inversion *inversion = make_end(&end, groups);
+        int iterations = 0;
+        bool ended = false, may_end = false;
+        inversion->method = &most_probable;
+        for (; !ended; iterations++) {
+            may_end = mf_inversion_may_end(inversion);
+            inversion->course.band.drifts.ramp.drift *= -1; // there and back
+            ended = mf_inversion_has_converged(inversion, true);
+            assert_true(may_end == ended);
+        }
+        assert_int_equal(iterations, groups > 0 ? 3 : 1);
+        inversion->course.progress.drifts.met = 0;
+        inversion->method = &memoryless;
+        assert_true(mf_inversion_may_end(inversion));
+        inversion->method = &most_probable;
+        end.problem.targets.target[TARGET_PRESSURE].count = 1;
+        assert_true(mf_inversion_may_end(inversion));
+    }
+}
+
 /// Each section must agree: a stiff bond with many counts hides nothing of a soft one.
 static void test_fit_ends_when_all_sections_agree(void **state) {
     (void)state;
@@ -317,6 +346,7 @@ int main(void) {
         cmocka_unit_test(test_pressure_of_each_state_must_settle),
         cmocka_unit_test(test_fit_with_groups_goes_on_while_it_walks_on),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
+        cmocka_unit_test(test_fit_knows_before_an_iteration_whether_it_may_end),
         cmocka_unit_test(test_fit_ends_when_all_sections_agree),
         cmocka_unit_test(test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees),
     };
