@@ -86,7 +86,8 @@ static void take_off(double *covariance, size_t n, const double *v, const double
 /// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
 /// the errors are those of U less its mean over the target. And f of local densities is known but
 /// for its slope: they are those of the convention.
-static enum status take_conventions_off(const struct inversion *inversion, double *covariance) {
+enum status mf_inversion_band_take_conventions_off(const struct inversion *inversion,
+                                                   double *covariance) {
     const struct potential_grid *grid = inversion_grid(inversion);
     OWNED double *constant = NULL, *mean = NULL;
     size_t first = grid->pairs_known;
@@ -138,19 +139,19 @@ static double spread(const struct inversion *inversion, const double *v, double 
 }
 
 /// Σ ← Σ + factor u uᵀ.
-static void add_square(struct inversion *inversion, double factor, const double *u) {
+void mf_inversion_band_add_square(struct inversion *inversion, double factor, const double *u) {
     const size_t n = inversion_grid(inversion)->known;
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
             inversion->course.band.covariance[a * n + b] += factor * u[a] * u[b];
 }
 
-/// asked += Dᵀ of what the prior still asks.
-static enum status add_prior(const struct inversion *inversion, struct imc_system system,
-                             gsl_vector *asked) {
+enum status mf_inversion_band_add_prior(const struct inversion *inversion, struct imc_system system,
+                                        gsl_matrix *normal, gsl_vector *asked) {
     enum status status = STATUS_OK;
     const struct inversion_course *course = &inversion->course;
     const size_t n = system.size, *point = inversion_grid(inversion)->known_point;
+    const double unit = pow(system.temperature, -2);
     double *phi = NULL, *reference = NULL;
     gsl_matrix *prior = gsl_matrix_alloc(2 * n - 1, n);
     gsl_vector *left = gsl_vector_alloc(2 * n - 1);
@@ -165,7 +166,9 @@ static enum status add_prior(const struct inversion *inversion, struct imc_syste
     system.reference = reference;
     mf_imc_solve_prior(&system, prior);
     CHECK(mf_imc_solve_prior_excess(&system, prior, left));
-    gsl_blas_dgemv(CblasTrans, pow(system.temperature, -2), prior, left, 1, asked);
+    gsl_blas_dgemv(CblasTrans, unit, prior, left, 1, asked);
+    if (normal)
+        gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, normal);
 done:
     gsl_matrix_free(prior);
     gsl_vector_free(left);
@@ -174,32 +177,35 @@ done:
     return status;
 }
 
-/// The step from here: the most probable one, x = H⁻¹ [Bᵀ L⁻¹ excess − DᵀD (Φ − reference)] with W
-/// as large as Birge's factor has it, or that of the coefficients.
-static enum status find_step(const struct inversion *inversion, const struct imc_system *system,
-                             double birge, double *step) {
+/// The most probable step, x = H⁻¹ [Bᵀ L⁻¹ excess − DᵀD (Φ − reference)] with W as large as Birge's
+/// factor has it.
+static enum status find_most_probable(const struct inversion *inversion,
+                                      const struct imc_system *system, double birge, double *step) {
     enum status status = STATUS_OK;
     const size_t n = inversion_grid(inversion)->known;
-    gsl_matrix *response = NULL;
-    gsl_vector *excess = NULL, *asked = NULL;
-    for (size_t a = 0; a < n; a++)
-        step[a] = inversion->course.step[inversion_grid(inversion)->known_point[a]];
-    if (inversion->state->basis.count > 0 ||
-        (inversion_grid(inversion)->groups > 0 && inversion->course.most_probable))
-        return STATUS_OK;
-    response = gsl_matrix_alloc(n, n);
-    excess = gsl_vector_alloc(n);
-    asked = gsl_vector_alloc(n);
+    gsl_matrix *response = gsl_matrix_alloc(n, n);
+    gsl_vector *excess = gsl_vector_alloc(n), *asked = gsl_vector_alloc(n);
     CHECK(response && excess && asked ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, excess);
     gsl_blas_dgemv(CblasTrans, 1 / birge, response, excess, 0, asked);
-    CHECK(add_prior(inversion, *system, asked));
+    CHECK(mf_inversion_band_add_prior(inversion, *system, NULL, asked));
     multiply(inversion->course.band.inverse, n, asked->data, step);
 done:
     gsl_matrix_free(response);
     gsl_vector_free(excess);
     gsl_vector_free(asked);
     return status;
+}
+
+/// The step from here: the most probable one, unless the method has found it or steps by
+/// coefficients.
+static void find_step(const struct inversion *inversion, const double *most_probable,
+                      double *step) {
+    const struct potential_grid *grid = inversion_grid(inversion);
+    const bool own =
+        inversion->state->basis.count > 0 || (grid->groups > 0 && inversion->course.most_probable);
+    for (size_t a = 0; a < grid->known; a++)
+        step[a] = own ? inversion->course.step[grid->known_point[a]] : most_probable[a];
 }
 
 /// What this step would change of the number whose slope is v.
@@ -233,7 +239,7 @@ static void add_drift(struct inversion *inversion, const double *weight, double 
             fmax(square,
                  0.5 * (square + pow(drifts->ramp[(drifts->near - 1) % INVERSION_MAX_DRIFTS], 2)));
     if (variance > 0) // without pairs there is no ramp
-        add_square(inversion, square / (variance * variance), scratch);
+        mf_inversion_band_add_square(inversion, square / (variance * variance), scratch);
 }
 
 /// A pressure, or a density, with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) +
@@ -250,7 +256,7 @@ static void add_bulk(struct inversion *inversion, double *scratch) {
     for (size_t a = 0; a < n; a++)
         scratch[a] /= along;
     take_off(inversion->course.band.covariance, n, scratch, slope);
-    add_square(inversion, noise * noise, scratch);
+    mf_inversion_band_add_square(inversion, noise * noise, scratch);
 }
 
 /// Standard errors, those of A, and those of Φ if A were known.
@@ -374,29 +380,32 @@ static enum status find_matrices(struct inversion *inversion, const struct imc_s
         TRY(mf_inversion_band_covariance(system, birge, band->inverse, &band->ramp.directions));
         TRY(find_covariance(inversion, system, birge));
     }
-    TRY(take_conventions_off(inversion, band->inverse));
-    return take_conventions_off(inversion, band->covariance);
+    TRY(mf_inversion_band_take_conventions_off(inversion, band->inverse));
+    return mf_inversion_band_take_conventions_off(inversion, band->covariance);
 }
 
 enum status mf_inversion_band_find(struct inversion *inversion) {
     enum status status = STATUS_OK;
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_band *band = &inversion->course.band;
-    double *weight = NULL, *scratch = NULL, *step = NULL;
+    double *weight = NULL, *scratch = NULL, *step = NULL, *most_probable = NULL;
     const double birge = mf_inversion_band_birge(&inversion->assessment);
     struct imc_shape *shape = NULL;
     NEW_ARRAY(weight, grid->known);
     NEW_ARRAY(scratch, grid->known);
     NEW_ARRAY(step, grid->known);
+    NEW_ARRAY(most_probable, grid->known);
     struct imc_system system = inversion->equations.system;
     NEW_ARRAY(shape, grid->blocks);
     mf_inversion_smooth_shapes(inversion, shape);
     system.shape = shape;
     CHECK(find_matrices(inversion, &system, birge));
+    CHECK(find_most_probable(inversion, &system, birge, most_probable));
     weigh_ramp(inversion, weight);
-    CHECK(find_step(inversion, &system, birge, step));
+    find_step(inversion, most_probable, step);
     find_drifts(inversion, step, weight, scratch);
     add_drift(inversion, weight, scratch);
+    CHECK(mf_inversion_band_add_range(inversion, &system, birge, most_probable, weight));
     add_bulk(inversion, scratch);
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
@@ -406,5 +415,6 @@ done:
     mf_memory_free(scratch);
     mf_memory_free(shape);
     mf_memory_free(step);
+    mf_memory_free(most_probable);
     return status;
 }

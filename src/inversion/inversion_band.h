@@ -34,6 +34,8 @@
 /// it, however smooth the prior, and so does that of the samples: where these have few counts, as
 /// in the first bins of a core, the error of Φ is at least theirs (mf_inversion_poisson_error).
 ///
+/// Φ of pairs ends at its range, whatever the law does; mf_inversion_band_add_range.
+///
 /// C is itself sampled, in few functions (inversion_covariance.h). What is least known follows the
 /// smallest eigenvalues, and those of a sampled covariance come out too small: the band of few
 /// samples is wider than by the exact C, and needs no correction.
@@ -95,6 +97,34 @@ double mf_inversion_band_birge(const struct inversion_assessment *assessment);
 
 /// Strength of mf_imc_solve's prior with which its step is the most probable one.
 double mf_inversion_band_prior(const struct inversion *inversion);
+
+/// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
+/// the errors are those of U less its mean over the target. And f of local densities is known but
+/// for its slope: they are those of the convention. Takes both off a covariance of Φ.
+enum status mf_inversion_band_take_conventions_off(const struct inversion *inversion,
+                                                   double *covariance) MUST_USE;
+
+/// Σ ← Σ + factor u uᵀ.
+void mf_inversion_band_add_square(struct inversion *inversion, double factor, const double *u);
+
+/// asked += Dᵀ of what the prior still asks, normal += DᵀD in its lower triangle.
+/// @param[in,out] normal  or NULL
+/// Fails: NO_MEMORY.
+enum status mf_inversion_band_add_prior(const struct inversion *inversion, struct imc_system system,
+                                        gsl_matrix *normal, gsl_vector *asked) MUST_USE;
+
+/// Add the error of the range to Σ: what a potential of pairs that ends at four fifths of its range
+/// would be, less the present one. What a law that falls as r^-6 has beyond its range moves the
+/// pressure by as much as what it has in the last fifth of it, and less if it falls faster: the
+/// change tells what lies beyond, of which g within the range knows nothing. Of star polymers whose
+/// tail is cut at 2.6, Φ was 8 of its other errors off, and 1.6 with 4. What noise alone makes of
+/// the change does not count.
+/// @param[in] step    the most probable one, shape [known]
+/// @param[in] weight  of A, shape [known]
+/// Fails: NO_MEMORY. Tested: test_band_range.
+enum status mf_inversion_band_add_range(struct inversion *inversion,
+                                        const struct imc_system *system, double birge,
+                                        const double *step, const double *weight) MUST_USE;
 
 enum status mf_inversion_band_init(struct inversion_band *band, size_t known,
                                    size_t points) MUST_USE;

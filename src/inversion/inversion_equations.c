@@ -82,10 +82,23 @@ struct filling {
     size_t row;
     gsl_matrix *response; ///< scratch, of one state
     gsl_vector *excess;
-    double *noise;             ///< scratch, of one state
-    double *response_variance; ///< scratch, with the variances of the response; or NULL
-    double birge;              ///< by which the variances of all rows will be larger
+    double *noise;       ///< scratch, of one state
+    double *more;        ///< scratch for more variances; or NULL
+    const bool *without; ///< bins that are left out, else `more` is that of the response; or NULL
+    double birge;        ///< by which the variances of all rows will be larger
 };
+
+/// The variance of what is left out, in its own.
+static const double left_out = 1e10;
+
+/// What comes to the variances of the bins.
+static enum status fill_more(const struct inversion_state *state, struct filling *to) {
+    if (to->without == NULL)
+        return to->more ? mf_imc_response_variance(state, to->more) : STATUS_OK;
+    for (size_t a = 0; a < state->grid.known; a++)
+        to->more[a] = to->without[a] ? left_out * state->variance[a] : 0;
+    return STATUS_OK;
+}
 
 /// slope·x = missing within the error.
 static void fill_row(struct filling *to, const double *slope, double missing, double wide) {
@@ -100,9 +113,8 @@ static void fill_row(struct filling *to, const double *slope, double missing, do
 static enum status fill_bins(const struct inversion_state *state, enum inversion_noise_kind kind,
                              struct filling *to) {
     struct imc_system own = mf_inversion_equations_of(state);
-    if (to->response_variance)
-        TRY(mf_imc_response_variance(state, to->response_variance));
-    mf_inversion_noise_find(state, kind, to->response_variance, to->noise);
+    TRY(fill_more(state, to));
+    mf_inversion_noise_find(state, kind, to->more, to->noise);
     own.noise = to->noise;
     mf_imc_solve_rows(&own, to->response, to->excess);
     for (size_t a = 0; a < own.size; a++, to->row++) {
@@ -157,6 +169,32 @@ static void take_triangle(const gsl_matrix *rows, const gsl_vector *rhs, struct 
     system->noise = NULL;
 }
 
+static enum status filling_allocate(const struct inversion_equations *equations,
+                                    struct filling *all) {
+    const size_t known = equations->state->grid.known, count = count_rows(equations);
+    all->rows = gsl_matrix_calloc(count, known);
+    all->rhs = gsl_vector_calloc(count);
+    all->response = gsl_matrix_alloc(known, known);
+    all->excess = gsl_vector_alloc(known);
+    return all->rows && all->rhs && all->response && all->excess ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+static void filling_free(struct filling *all) {
+    gsl_matrix_free(all->rows);
+    gsl_vector_free(all->rhs);
+    gsl_matrix_free(all->response);
+    gsl_vector_free(all->excess);
+}
+
+/// The rows of all states.
+static enum status fill_all(const struct inversion_equations *equations, struct filling *all) {
+    for (size_t s = 0; s < equations->states; s++) {
+        TRY(fill_bins(&equations->state[s], equations->kind[s], all));
+        fill_others(&equations->state[s], all);
+    }
+    return STATUS_OK;
+}
+
 /// All rows, reduced to as many as one state has.
 /// @param[in] response_variance  scratch: the variances of the response are added to those of the
 ///                               excess; NULL: they are not
@@ -164,30 +202,36 @@ static enum status reduce(const struct inversion_equations *equations, double bi
                           double *response_variance, struct inversion_rows *to,
                           struct imc_system *system) {
     enum status status = STATUS_OK;
-    const size_t known = equations->state->grid.known, count = count_rows(equations);
-    struct filling all = {.rows = gsl_matrix_calloc(count, known),
-                          .rhs = gsl_vector_calloc(count),
-                          .response = gsl_matrix_alloc(known, known),
-                          .excess = gsl_vector_alloc(known),
-                          .noise = equations->noise,
-                          .response_variance = response_variance,
-                          .birge = birge};
-    gsl_vector *reflect = gsl_vector_alloc(known);
-    CHECK(all.rows && all.rhs && all.response && all.excess && reflect ? STATUS_OK
-                                                                       : STATUS_NO_MEMORY);
-    for (size_t s = 0; s < equations->states; s++) {
-        CHECK(fill_bins(&equations->state[s], equations->kind[s], &all));
-        fill_others(&equations->state[s], &all);
-    }
+    struct filling all = {.noise = equations->noise, .more = response_variance, .birge = birge};
+    gsl_vector *reflect = gsl_vector_alloc(equations->state->grid.known);
+    CHECK(reflect ? STATUS_OK : STATUS_NO_MEMORY);
+    CHECK(filling_allocate(equations, &all));
+    CHECK(fill_all(equations, &all));
     gsl_linalg_QR_decomp(all.rows, reflect);
     gsl_linalg_QR_QTvec(all.rows, reflect, all.rhs);
     take_triangle(all.rows, all.rhs, to, system);
 done:
-    gsl_matrix_free(all.rows);
-    gsl_vector_free(all.rhs);
-    gsl_matrix_free(all.response);
-    gsl_vector_free(all.excess);
+    filling_free(&all);
     gsl_vector_free(reflect);
+    return status;
+}
+
+enum status mf_inversion_equations_without(const struct inversion_equations *equations,
+                                           double birge, const bool *without, gsl_matrix *normal,
+                                           gsl_vector *asked) {
+    enum status status = STATUS_OK;
+    const size_t known = equations->state->grid.known;
+    struct filling all = {.without = without, .birge = birge};
+    NEW_ARRAY(all.noise, known * known);
+    NEW_ARRAY(all.more, known);
+    CHECK(filling_allocate(equations, &all));
+    CHECK(fill_all(equations, &all));
+    gsl_blas_dsyrk(CblasLower, CblasTrans, 1 / birge, all.rows, 0, normal);
+    gsl_blas_dgemv(CblasTrans, 1 / birge, all.rows, all.rhs, 0, asked);
+done:
+    filling_free(&all);
+    mf_memory_free(all.noise);
+    mf_memory_free(all.more);
     return status;
 }
 

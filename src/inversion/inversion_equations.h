@@ -15,6 +15,9 @@
 #include "inversion/inversion_noise.h"
 #include "problem/inverse.h"
 
+#include <gsl/gsl_matrix.h>
+#include <gsl/gsl_vector.h>
+
 struct inversion_state;
 
 /// What a reduced system is made of; its variances are 1.
@@ -48,6 +51,15 @@ void mf_inversion_equations_clear(struct inversion_equations *equations);
 /// Fails: NO_MEMORY. Tested: test_inversion_equations, test_fit_states, test_fit_kirkwood_buff.
 enum status mf_inversion_equations_fill(struct inversion_equations *equations,
                                         double birge) MUST_USE;
+
+/// The normal equations of all rows without those of some bins, which their own and those after
+/// them in one state's noise then know nothing of: Bᵀ B/birge, of which the lower triangle is
+/// filled, and Bᵀ L⁻¹ excess/birge.
+/// @param[in] without  shape [known]
+/// Fails: NO_MEMORY. Tested: test_inversion_equations.
+enum status mf_inversion_equations_without(const struct inversion_equations *equations,
+                                           double birge, const bool *without, gsl_matrix *normal,
+                                           gsl_vector *asked) MUST_USE;
 
 /// The equations of one state as they stand, without the pressure.
 struct imc_system mf_inversion_equations_of(const struct inversion_state *state);

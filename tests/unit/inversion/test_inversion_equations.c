@@ -61,12 +61,14 @@ static void make(struct made *made) {
     made->state[1].grid.seen[UNSEEN] = false;
 }
 
-/// Bᵀ B of all rows, with the variances of g larger by a factor; by the definition.
-static double normal(const struct made *made, size_t a, size_t b, double factor) {
+/// Bᵀ B of all rows but those of some bins, with the variances of g larger by a factor; by the
+/// definition.
+static double normal(const struct made *made, size_t a, size_t b, double factor,
+                     const bool *without) {
     double sum = 0;
     for (size_t s = 0; s < STATES; s++) {
         for (size_t n = 0; n < KNOWN; n++)
-            if (made->state[s].grid.seen[n])
+            if (made->state[s].grid.seen[n] && !without[n])
                 sum += made->covariance[s][n * KNOWN + a] * made->covariance[s][n * KNOWN + b] /
                        (temperature[s] * temperature[s] * factor * made->variance[s][n]);
         sum += made->slope[s][a] * made->slope[s][b] / (pressure_error * pressure_error);
@@ -75,11 +77,11 @@ static double normal(const struct made *made, size_t a, size_t b, double factor)
 }
 
 /// The same of Bᵀ b.
-static double right_side(const struct made *made, size_t a, double factor) {
+static double right_side(const struct made *made, size_t a, double factor, const bool *without) {
     double sum = 0;
     for (size_t s = 0; s < STATES; s++) {
         for (size_t n = 0; n < KNOWN; n++)
-            if (made->state[s].grid.seen[n])
+            if (made->state[s].grid.seen[n] && !without[n])
                 sum += made->covariance[s][n * KNOWN + a] * made->excess[s][n] /
                        (temperature[s] * factor * made->variance[s][n]);
         sum += made->slope[s][a] * (made->pressure[s] - made->state[s].bulk.value) /
@@ -90,6 +92,7 @@ static double right_side(const struct made *made, size_t a, double factor) {
 
 static void test_equations_of_states_have_the_same_least_squares(void **state) {
     (void)state;
+    static const bool none[KNOWN] = {false};
     static struct made made;
     struct inversion_equations equations = {0};
     make(&made);
@@ -100,15 +103,38 @@ static void test_equations_of_states_have_the_same_least_squares(void **state) {
         double asked = 0;
         for (size_t n = 0; n < KNOWN; n++)
             asked += c[n * KNOWN + a] / unit * equations.system.excess[n] / birge;
-        assert_close(asked, right_side(&made, a, birge), 1e-9);
+        assert_close(asked, right_side(&made, a, birge, none), 1e-9);
         for (size_t b = 0; b < KNOWN; b++) {
             double found = 0;
             // As the band has it: all variances, which are 1, larger by Birge's factor.
             for (size_t n = 0; n < KNOWN; n++)
                 found += c[n * KNOWN + a] * c[n * KNOWN + b] / (unit * unit * birge);
-            assert_close(found, normal(&made, a, b, birge), 1e-9);
+            assert_close(found, normal(&made, a, b, birge, none), 1e-9);
         }
     }
+    mf_inversion_equations_clear(&equations);
+    for (size_t s = 0; s < STATES; s++)
+        mf_potential_grid_clear(&made.state[s].grid);
+}
+
+static void test_equations_without_some_bins_know_nothing_of_them(void **state) {
+    (void)state;
+    static const bool without[KNOWN] = {[1] = true, [KNOWN - 1] = true};
+    static struct made made;
+    struct inversion_equations equations = {0};
+    gsl_matrix *found = gsl_matrix_alloc(KNOWN, KNOWN);
+    gsl_vector *asked = gsl_vector_alloc(KNOWN);
+    make(&made);
+    assert_ok(mf_inversion_equations_init(&equations, made.state, STATES));
+    assert_ok(mf_inversion_equations_fill(&equations, birge));
+    assert_ok(mf_inversion_equations_without(&equations, birge, without, found, asked));
+    for (size_t a = 0; a < KNOWN; a++) {
+        assert_close(gsl_vector_get(asked, a), right_side(&made, a, birge, without), 1e-7);
+        for (size_t b = 0; b <= a; b++)
+            assert_close(gsl_matrix_get(found, a, b), normal(&made, a, b, birge, without), 1e-7);
+    }
+    gsl_matrix_free(found);
+    gsl_vector_free(asked);
     mf_inversion_equations_clear(&equations);
     for (size_t s = 0; s < STATES; s++)
         mf_potential_grid_clear(&made.state[s].grid);
@@ -187,6 +213,7 @@ static void test_equations_scatter_by_errors_of_each_bin(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_equations_without_some_bins_know_nothing_of_them),
         cmocka_unit_test(test_equations_of_states_have_the_same_least_squares),
         cmocka_unit_test(test_equations_scatter_by_errors_of_each_bin),
     };
