@@ -14,6 +14,7 @@ enum status mf_inversion_band_init(struct inversion_band *band, size_t known, si
     NEW_ARRAY(band->covariance, known * known);
     NEW_ARRAY(band->error, points);
     NEW_ARRAY(band->without_ramp, points);
+    NEW_ARRAY(band->beside_ramp, known);
     NEW_ARRAY(band->flat, INVERSE_FLAT * points);
 done:
     return status;
@@ -24,6 +25,7 @@ void mf_inversion_band_clear(struct inversion_band *band) {
     mf_memory_free(band->covariance);
     mf_memory_free(band->error);
     mf_memory_free(band->without_ramp);
+    mf_memory_free(band->beside_ramp);
     mf_memory_free(band->flat);
     *band = (struct inversion_band){0};
 }
@@ -271,7 +273,8 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
         const double min = mf_inversion_band_min_error(inversion, a);
         band->error[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(variance), min) : NAN;
         band->without_ramp[grid->known_point[a]] =
-            variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp)), min) : NAN;
+            variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp) + band->beside_ramp[a]), min)
+                          : NAN;
     }
     for (size_t g = 0; g < grid->groups; g++) {
         mf_potential_grid_close(grid, g, band->error);

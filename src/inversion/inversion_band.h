@@ -58,6 +58,7 @@ struct inversion_band {
     double *covariance;   ///< of Φ in the known bins, the same shape
     double *error;        ///< standard errors, shape [points]; 0 where Φ is set
     double *without_ramp; ///< if A of the ramp A (1 − r/r_c) were known, shape [points]
+    double *beside_ramp;  ///< their squares by the range, shape [known]
     double
         *flat; ///< inverse_step.curve_flat, shape [INVERSE_FLAT, points] of pairs, then of groups
     struct inverse_ramp ramp;

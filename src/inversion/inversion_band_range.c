@@ -6,6 +6,7 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
+#include <string.h>
 
 /// A shorter range, in that of the fit.
 static const double shorter = 0.8;
@@ -47,18 +48,31 @@ static bool solve_with_zeros(const struct inversion *inversion, const bool *oute
     return true;
 }
 
-/// The share of the square of the change of A that is more than its error, in Σ already, makes.
-static double find_share(const struct inversion *inversion, const double *weight,
-                         const gsl_vector *change) {
-    const double *covariance = inversion->course.band.covariance;
+/// Add the change of Φ to Σ: the share of it that is more than the error of A, in Σ already, makes.
+/// What of it is not the move of Φ along A, as the data have it, is left if A is known.
+/// @param[in,out] change  what is left
+static enum status add_change(struct inversion *inversion, const double *weight,
+                              gsl_vector *change) {
+    struct inversion_band *band = &inversion->course.band;
     const size_t n = change->size;
-    double along = 0, variance = 0;
-    for (size_t a = 0; a < n; a++) {
-        along += weight[a] * gsl_vector_get(change, a);
-        for (size_t b = 0; b < n; b++)
-            variance += weight[a] * covariance[a * n + b] * weight[b];
+    const gsl_matrix_const_view covariance = gsl_matrix_const_view_array(band->covariance, n, n);
+    const gsl_vector_const_view w = gsl_vector_const_view_array(weight, n);
+    double variance, along;
+    gsl_vector *with = gsl_vector_alloc(n);
+    if (with == NULL)
+        return STATUS_NO_MEMORY;
+    gsl_blas_dgemv(CblasNoTrans, 1, &covariance.matrix, &w.vector, 0, with);
+    gsl_blas_ddot(&w.vector, with, &variance);
+    gsl_blas_ddot(&w.vector, change, &along);
+    if (along * along > variance) {
+        const double share = 1 - variance / (along * along);
+        mf_inversion_band_add_square(inversion, share, change->data);
+        gsl_blas_daxpy(-along / variance, with, change);
+        for (size_t a = 0; a < n; a++)
+            band->beside_ramp[a] = share * pow(gsl_vector_get(change, a), 2);
     }
-    return along != 0 ? fmax(0, 1 - variance / (along * along)) : 0;
+    gsl_vector_free(with);
+    return STATUS_OK;
 }
 
 enum status mf_inversion_band_add_range(struct inversion *inversion,
@@ -69,6 +83,7 @@ enum status mf_inversion_band_add_range(struct inversion *inversion,
     gsl_matrix *normal = gsl_matrix_alloc(grid->known, grid->known);
     gsl_vector *change = gsl_vector_alloc(grid->known);
     bool *outer = NULL;
+    memset(inversion->course.band.beside_ramp, 0, grid->known * sizeof(double));
     if (grid->pairs == 0 || inversion->state->basis.count > 0)
         goto done;
     CHECK(normal && change ? STATUS_OK : STATUS_NO_MEMORY);
@@ -80,7 +95,7 @@ enum status mf_inversion_band_add_range(struct inversion *inversion,
         goto done;
     for (size_t a = 0; a < grid->known; a++)
         *gsl_vector_ptr(change, a) -= step[a];
-    mf_inversion_band_add_square(inversion, find_share(inversion, weight, change), change->data);
+    CHECK(add_change(inversion, weight, change));
     CHECK(mf_inversion_band_take_conventions_off(inversion, inversion->course.band.covariance));
 done:
     gsl_matrix_free(normal);
