@@ -138,8 +138,7 @@ static enum status advance(struct inversion *inversion, struct inverse_step *ste
     mf_inversion_history_add(&inversion->history, first->replicas.counts.mean,
                              first->target.counts);
     TRY(mf_inversion_course_accept(inversion, kept));
-    converged =
-        mf_inversion_has_converged(inversion, *kept && !inversion->assessment.unequilibrated.found);
+    converged = mf_inversion_has_converged(inversion, *kept);
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
     describe(inversion, own, converged, step);

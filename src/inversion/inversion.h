@@ -112,9 +112,10 @@ enum status mf_inversion_observe(struct inversion *inversion,
 /// Sample the present potential in one state until their noise, and what of them has not settled,
 /// is small against their error, and assess them. Samples in equilibrium count for all; those that
 /// are far from their targets and not from equilibrium, for a step, and so do those in which sizes
-/// of molecules alone remember. They are left `useless` where they have cost 600 times as much as
-/// the first ones, or after a step to wait for them as much as all potentials before, or get
-/// farther and cannot be kept. Fails: NO_MEMORY, INTERRUPTED. Tested: test_inversion_doubling,
+/// of molecules alone remember. They are given up where they have cost 600 times as much as the
+/// first ones, or after a step to wait for them as much as all potentials before, or get farther
+/// and cannot be kept: left `useless`, unless replicas only remember and the samples before were
+/// not given up, too. Fails: NO_MEMORY, INTERRUPTED. Tested: test_inversion_doubling,
 /// test_inversion_equilibrium.
 enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,
                                 const struct inverse_listener *listener) MUST_USE;

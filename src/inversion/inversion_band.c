@@ -71,46 +71,6 @@ done:
     return status;
 }
 
-/// Σ ← P Σ Pᵀ with P = 1 − v ℓᵀ: that of curves from which ℓ·x times the change v is taken off,
-/// ℓ·v = 1.
-static void take_off(double *covariance, size_t n, const double *v, const double *l) {
-    for (int side = 0; side < 2; side++)
-        for (size_t b = 0; b < n; b++) {
-            const size_t along = side ? n : 1, across = side ? 1 : n;
-            double part = 0;
-            for (size_t a = 0; a < n; a++)
-                part += l[a] * covariance[a * across + b * along];
-            for (size_t a = 0; a < n; a++)
-                covariance[a * across + b * along] -= part * v[a];
-        }
-}
-
-/// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
-/// the errors are those of U less its mean over the target. And f of local densities is known but
-/// for its slope: they are those of the convention.
-enum status mf_inversion_band_take_conventions_off(const struct inversion *inversion,
-                                                   double *covariance) {
-    const struct potential_grid *grid = inversion_grid(inversion);
-    OWNED double *constant = NULL, *mean = NULL;
-    size_t first = grid->pairs_known;
-    TRY_ARRAY(constant, grid->known);
-    TRY_ARRAY(mean, grid->known);
-    for (size_t g = 0; g < grid->groups; first += grid->group[g++].own.known) {
-        const struct bonded_grid *own = &grid->group[g].own;
-        const double sum = mf_bonded_grid_mean(own) * (double)own->known;
-        memset(constant, 0, grid->known * sizeof *constant);
-        memset(mean, 0, grid->known * sizeof *mean);
-        for (size_t a = 0; a < own->known; a++) {
-            constant[first + a] = 1;
-            mean[first + a] = own->target[own->first + a] / sum;
-        }
-        take_off(covariance, grid->known, constant, mean);
-    }
-    if (grid->shared.change)
-        take_off(covariance, grid->known, grid->shared.change, grid->shared.weight);
-    return STATUS_OK;
-}
-
 /// Weights w of the best ramp, A = Σ w_a Φ_a, over the bins that are well known.
 static void weigh_ramp(const struct inversion *inversion, double *weight) {
     const struct potential_grid *grid = inversion_grid(inversion);
@@ -245,20 +205,22 @@ static void add_drift(struct inversion *inversion, const double *weight, double 
 }
 
 /// A pressure, or a density, with its error is met along u = H⁻¹p: Σ ← (1 − k pᵀ) Σ (1 − p kᵀ) +
-/// σ_P² k kᵀ with k = u/(p·u).
-static void add_bulk(struct inversion *inversion, double *scratch) {
+/// σ_P² k kᵀ with k = u/(p·u). False if none is asked for, or it is among the equations.
+/// @param[out] k  shape [known]
+static bool meet_bulk(struct inversion *inversion, double *k) {
     const double *slope = inversion->state->bulk.slope;
     const size_t n = inversion_grid(inversion)->known;
-    inversion->course.band.ramp.bulk_open = sqrt(spread(inversion, slope, scratch));
     if (!mf_inversion_bulk_is_asked(inversion->state) || inversion->equations.reduced)
-        return; // it is among the equations
+        return false;
+    inversion->course.band.ramp.bulk_open = sqrt(spread(inversion, slope, k));
     const double noise =
         inversion->assessment.distance[mf_inversion_bulk_kind(inversion->state)].noise;
-    const double along = multiply(inversion->course.band.inverse, n, slope, scratch);
+    const double along = multiply(inversion->course.band.inverse, n, slope, k);
     for (size_t a = 0; a < n; a++)
-        scratch[a] /= along;
-    take_off(inversion->course.band.covariance, n, scratch, slope);
-    mf_inversion_band_add_square(inversion, noise * noise, scratch);
+        k[a] /= along;
+    mf_inversion_band_take_off(inversion->course.band.covariance, n, k, slope);
+    mf_inversion_band_add_square(inversion, noise * noise, k);
+    return true;
 }
 
 /// Standard errors, those of A, and those of Φ if A were known.
@@ -272,9 +234,8 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
         const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
         const double min = mf_inversion_band_min_error(inversion, a);
         band->error[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(variance), min) : NAN;
-        band->without_ramp[grid->known_point[a]] =
-            variance >= 0 ? fmax(sqrt(fmax(0, variance - of_ramp) + band->beside_ramp[a]), min)
-                          : NAN;
+        const double left = fmin(variance, fmax(0, variance - of_ramp) + band->beside_ramp[a]);
+        band->without_ramp[grid->known_point[a]] = variance >= 0 ? fmax(sqrt(left), min) : NAN;
     }
     for (size_t g = 0; g < grid->groups; g++) {
         mf_potential_grid_close(grid, g, band->error);
@@ -383,8 +344,8 @@ static enum status find_matrices(struct inversion *inversion, const struct imc_s
         TRY(mf_inversion_band_covariance(system, birge, band->inverse, &band->ramp.directions));
         TRY(find_covariance(inversion, system, birge));
     }
-    TRY(mf_inversion_band_take_conventions_off(inversion, band->inverse));
-    return mf_inversion_band_take_conventions_off(inversion, band->covariance);
+    TRY(mf_inversion_band_take_conventions_off(inversion, band->inverse, NULL));
+    return mf_inversion_band_take_conventions_off(inversion, band->covariance, NULL);
 }
 
 enum status mf_inversion_band_find(struct inversion *inversion) {
@@ -408,8 +369,12 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     find_step(inversion, most_probable, step);
     find_drifts(inversion, step, weight, scratch);
     add_drift(inversion, weight, scratch);
-    CHECK(mf_inversion_band_add_range(inversion, &system, birge, most_probable, weight));
-    add_bulk(inversion, scratch);
+    const bool met = meet_bulk(inversion, scratch);
+    const struct inversion_band_without without = {&system, birge, most_probable, weight,
+                                                   met ? scratch : NULL};
+    CHECK(mf_inversion_band_add_range(inversion, &without));
+    if (!met)
+        band->ramp.bulk_open = sqrt(spread(inversion, inversion->state->bulk.slope, scratch));
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));

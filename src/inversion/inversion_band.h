@@ -99,11 +99,19 @@ double mf_inversion_band_birge(const struct inversion_assessment *assessment);
 /// Strength of mf_imc_solve's prior with which its step is the most probable one.
 double mf_inversion_band_prior(const struct inversion *inversion);
 
+/// Σ ← P Σ Pᵀ with P = 1 − v ℓᵀ: that of curves from which ℓ·x times the change v is taken off,
+/// ℓ·v = 1; and x ← P x.
+void mf_inversion_band_take_off(double *covariance, size_t n, const double *v, const double *l);
+void mf_inversion_band_take_off_curve(double *x, size_t n, const double *v, const double *l);
+
 /// U of a group is known but for a constant, which no distribution sees and the prior alone holds:
 /// the errors are those of U less its mean over the target. And f of local densities is known but
-/// for its slope: they are those of the convention. Takes both off a covariance of Φ.
+/// for its slope: they are those of the convention. Takes both off a covariance of Φ, or a change.
+/// @param[in,out] covariance  or NULL
+/// @param[in,out] x           shape [known]; or NULL
+/// Fails: NO_MEMORY.
 enum status mf_inversion_band_take_conventions_off(const struct inversion *inversion,
-                                                   double *covariance) MUST_USE;
+                                                   double *covariance, double *x) MUST_USE;
 
 /// Σ ← Σ + factor u uᵀ.
 void mf_inversion_band_add_square(struct inversion *inversion, double factor, const double *u);
@@ -114,18 +122,26 @@ void mf_inversion_band_add_square(struct inversion *inversion, double factor, co
 enum status mf_inversion_band_add_prior(const struct inversion *inversion, struct imc_system system,
                                         gsl_matrix *normal, gsl_vector *asked) MUST_USE;
 
-/// Add the error of the range to Σ: what a potential of pairs that ends at four fifths of its range
-/// would be, less the present one. What a law that falls as r^-6 has beyond its range moves the
-/// pressure by as much as what it has in the last fifth of it, and less if it falls faster: the
-/// change tells what lies beyond, of which g within the range knows nothing. Of star polymers whose
-/// tail is cut at 2.6, Φ was 8 of its other errors off, and 1.6 with 4. What noise alone makes of
-/// the change does not count.
-/// @param[in] step    the most probable one, shape [known]
-/// @param[in] weight  of A, shape [known]
-/// Fails: NO_MEMORY. Tested: test_band_range.
+/// What the error of the range is found from.
+struct inversion_band_without {
+    const struct imc_system *system;
+    double birge;
+    const double *step;   ///< the most probable one, shape [known]
+    const double *weight; ///< of A, the same shape
+    const double *meet;   ///< k of the pressure that is met, the same shape; or NULL
+};
+
+/// Add the error of the range to Σ: of a potential of pairs that ends at its range the law may go
+/// on. What the equations make of one that ends at four fifths of the range, of which they then
+/// know no more, less the most probable one, is δ. Of a law that falls as exp(−κr) or r^-6 what
+/// lies beyond the range moves the pressure by (2s)² times that of its last fifth, within a third,
+/// at most as much; s is the share of the height of the last fifth that the slope at the end alone
+/// makes. So a law that ends there by itself, without a slope, leaves nothing. What noise alone
+/// makes of the change of a pair type's ramp does not count. Of star polymers whose tail is cut at
+/// 2.6, Φ was 8 of its other errors off, and 1.6 with 4.
+/// Fails: NO_MEMORY. Tested: test_inversion_band_range, test_band_range.
 enum status mf_inversion_band_add_range(struct inversion *inversion,
-                                        const struct imc_system *system, double birge,
-                                        const double *step, const double *weight) MUST_USE;
+                                        const struct inversion_band_without *without) MUST_USE;
 
 enum status mf_inversion_band_init(struct inversion_band *band, size_t known,
                                    size_t points) MUST_USE;

@@ -224,6 +224,9 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     if (!kept) // it goes back to the one before
         return false;
     const bool meets = progress->best.precise && meets_targets(inversion);
+    const bool unsettled = inversion->assessment.unequilibrated.found;
+    if (unsettled && !meets)
+        return false;
     if (!meets && !mf_inversion_is_near(inversion))
         drifts->near = drifts->met = 0;
     else
@@ -234,5 +237,5 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     drifts->met++;
     const uint32_t min = least_met(inversion);
     const bool settled = drifts->met >= min && has_settled(inversion, min);
-    return !must_settle(inversion) || (settled && !progress->on_its_way);
+    return !unsettled && (!must_settle(inversion) || (settled && !progress->on_its_way));
 }

@@ -184,6 +184,7 @@ enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) 
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
     *kept = !assessment->useless && mf_inversion_keeps(inversion);
     progress->from_disorder = !*kept;
+    progress->gave_up = assessment->unequilibrated.found && assessment->unequilibrated.for_long;
     progress->lost = start && !*kept && !mf_inversion_start_is_poor(inversion, false);
     if (start && !*kept)
         return keep(inversion); // to have something to show

@@ -48,6 +48,7 @@ struct inversion_progress {
                        ///< by a response that changes on the way, would hold the fit back
     bool second_start; ///< it began again, from −k_B T ln g
     bool lost;         ///< none of the starts settled
+    bool gave_up;      ///< the last samples had not settled when they had cost enough
 };
 
 /// Curves are of shape [points].
@@ -137,7 +138,7 @@ bool mf_inversion_may_end(const struct inversion *inversion);
 /// into the last step: the pressures of 16 twins were 0.6 errors too low. They need not follow on
 /// each other: by the noise of C chi^2 of hexane swings about its bound. The way has an end, as the
 /// prior is that of Φ (inversion_band.h), and a fit whose iterations do not reach it has not
-/// converged. Iterations that are not kept, or whose samples have not settled, do not count.
+/// converged. Iterations that are not kept do not count, and the last one must have settled.
 /// Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 

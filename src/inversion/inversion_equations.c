@@ -190,7 +190,8 @@ static void filling_free(struct filling *all) {
 static enum status fill_all(const struct inversion_equations *equations, struct filling *all) {
     for (size_t s = 0; s < equations->states; s++) {
         TRY(fill_bins(&equations->state[s], equations->kind[s], all));
-        fill_others(&equations->state[s], all);
+        if (equations->reduced)
+            fill_others(&equations->state[s], all);
     }
     return STATUS_OK;
 }

@@ -187,9 +187,12 @@ static bool is_hopeless(struct sampling *sampling) {
 }
 
 /// Whether samples that were given up do for a step: their replicas only remember, and scatter by
-/// it; none of them drifts, and halves that began apart have met.
-static bool does_for_step(const struct inversion_unequilibrated *unequilibrated) {
-    return unequilibrated->for_long && !unequilibrated->drifts && !unequilibrated->apart;
+/// it; none of them drifts, and halves that began apart have met. Not one time after the other.
+static bool does_for_step(const struct sampling *sampling) {
+    const struct inversion_unequilibrated *unequilibrated =
+        &sampling->state->assessment.unequilibrated;
+    return unequilibrated->for_long && !unequilibrated->drifts && !unequilibrated->apart &&
+           !sampling->inversion->course.progress.gave_up;
 }
 
 /// Take samples by the plan, all of them or as many again.
@@ -292,7 +295,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
     unequilibrated->sweeps = sampling.sweeps;
     state->work.memory = state->inefficiency * (double)sampling.plan.every;
     state->assessment.unstable = unstable;
-    state->assessment.useless = unstable || (waits(&sampling) && !does_for_step(unequilibrated));
+    state->assessment.useless = unstable || (waits(&sampling) && !does_for_step(&sampling));
     state->work.sweeps += replicas * sampling.sweeps;
     return STATUS_OK;
 }

@@ -137,7 +137,8 @@ void mf_inversion_states_assess(const struct inversion_state *state, size_t stat
         all->misfit += own->misfit / (double)states;
         all->stretch = own->stretch > all->stretch ? own->stretch : all->stretch;
         const bool found = all->unequilibrated.found || own->unequilibrated.found;
-        if (!all->useless && own->useless)
+        const bool given_up = own->unequilibrated.found && own->unequilibrated.for_long;
+        if (!all->useless && (own->useless || given_up))
             all->unequilibrated = own->unequilibrated;
         all->unequilibrated.found = found;
         all->useless = all->useless || own->useless;

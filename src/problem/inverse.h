@@ -217,7 +217,8 @@ struct inverse_ramp {
     double drift;      ///< of A that the target still asks for [k_B T_0]; part of the error
     double bulk_drift; ///< the same of what it moves, inverse_problem_bulk
     double bulk;       ///< its derivative by A
-    double bulk_open;  ///< its standard error by g(r) alone
+    double bulk_open;  ///< its standard error by g(r) alone,
+    double bulk_range; ///< of which this is that of the range of the potential
     double directions; ///< of the potential that the data determine,
     double bins;       ///< out of so many
 };

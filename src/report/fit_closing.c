@@ -210,10 +210,16 @@ static void print_bulk(struct progress *to, const struct fit_file *fit,
         targets_ask(&fit->problem.compared, kind))
         return;
     print_open(factor * value, factor * hypot(open, error), range);
-    mf_progress_print(to,
-                      "undetermined: g(r) alone does not determine the %s: %s%s; give \"%s\" as a "
-                      "second target to fix it",
-                      name, range, mf_units_suffix(units, of, unit), name);
+    mf_progress_print(
+        to,
+        "undetermined: g(r) alone does not determine the %s: %s%s%s; give \"%s\" as a "
+        "second target to fix it",
+        name, range, mf_units_suffix(units, of, unit),
+        result->ramp.bulk_range > sqrt(0.5) * open
+            ? ", most of it by what the law may do beyond the range, which a longer "
+              "\"cutoff\" of the target tells"
+            : "",
+        name);
 }
 
 /// What relaxes so slowly that the samples hold few independent values of it.

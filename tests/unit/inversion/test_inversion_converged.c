@@ -175,6 +175,22 @@ static void test_fit_with_groups_ends_at_once_where_nothing_must_settle(void **s
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
+/// Samples that have not settled count, and the fit does not end with them: if they did not, those
+/// that need not settle yet would be waited for by those that end it.
+static void test_fit_ends_with_samples_that_have_settled(void **state) {
+    (void)state;
+    struct end end;
+    struct inversion *inversion = make_end(&end, 1);
+    inversion->assessment.unequilibrated.found = true;
+    for (int k = 0; k < 4; k++) {
+        inversion->course.band.drifts.ramp.drift *= -1;
+        assert_false(mf_inversion_has_converged(inversion, true));
+    }
+    inversion->assessment.unequilibrated.found = false;
+    inversion->course.band.drifts.ramp.drift *= -1;
+    assert_true(mf_inversion_has_converged(inversion, true));
+}
+
 /// Samples of an iteration that cannot be the last need not be as good as the last ones: whether it
 /// can is told before it, and the same as after it.
 static void test_fit_knows_before_an_iteration_whether_it_may_end(void **state) {
@@ -346,6 +362,7 @@ int main(void) {
         cmocka_unit_test(test_pressure_of_each_state_must_settle),
         cmocka_unit_test(test_fit_with_groups_goes_on_while_it_walks_on),
         cmocka_unit_test(test_fit_with_groups_ends_at_once_where_nothing_must_settle),
+        cmocka_unit_test(test_fit_ends_with_samples_that_have_settled),
         cmocka_unit_test(test_fit_knows_before_an_iteration_whether_it_may_end),
         cmocka_unit_test(test_fit_ends_when_all_sections_agree),
         cmocka_unit_test(test_fit_that_forgets_ends_when_its_mean_or_its_last_potential_agrees),
