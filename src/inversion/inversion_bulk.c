@@ -87,6 +87,20 @@ void mf_inversion_bulk_measure(struct inversion_state *state) {
     state->assessment.bulk_reach = hypot(distance->noise, 2 * find_change(state) * distance->rms);
 }
 
+struct inverse_doubling mf_inversion_bulk_noise(const struct inversion_state *state,
+                                                int doublings) {
+    static const double noise_share = 0.5;
+    enum { MOST = 4 };
+    if (!mf_inversion_bulk_is_asked(state) || !mf_inversion_state_is_near(state) ||
+        doublings >= MOST)
+        return (struct inverse_doubling){.wanted = 1, .unit = ""};
+    return (struct inverse_doubling){
+        .noise = state->bulk.error,
+        .wanted =
+            fmax(*target_of(state)->error, noise_share * fabs(mf_inversion_bulk_missing(state))),
+        .unit = mf_observable_kind(mf_inversion_bulk_kind(state)).target->unit};
+}
+
 double mf_inversion_bulk_shift(const struct inversion_state *state) {
     const bool density = mf_inversion_bulk_kind(state) == TARGET_DENSITY;
     const double square = mf_inversion_equilibrium_shift(

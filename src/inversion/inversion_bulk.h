@@ -4,7 +4,7 @@
 #pragma once
 
 #include "base/status.h"
-#include "problem/targets.h"
+#include "problem/inverse.h"
 
 struct inversion_state;
 
@@ -32,6 +32,13 @@ enum status mf_inversion_bulk_check(const struct inversion_state *state) MUST_US
 /// means, or what that of the samples makes of as many independent ones as g(r) sees, if that is
 /// more: few chains may agree by chance.
 void mf_inversion_bulk_measure(struct inversion_state *state);
+
+/// The error of it, and how small the samples are to make it near to the target's g: as that of its
+/// target, or half of what it is off; 0 of 1 if it is not asked for, far from g, and after a few
+/// doublings: what is asked for more exactly is not to cost many times what g does. Tested:
+/// test_inversion_doubling.
+/// @param[in] doublings  of the present samples
+struct inverse_doubling mf_inversion_bulk_noise(const struct inversion_state *state, int doublings);
 
 /// Whether the samples have a pressure: an engine that knows more than we, and tells none, leaves
 /// 0.

@@ -62,18 +62,24 @@ static double find_share(const struct inversion_state *state,
     return reached || inversion_section_agrees(section) ? 0 : noise_share;
 }
 
+/// Of two errors the one that is farther from what it is to be.
+static struct inverse_doubling noisier(struct inverse_doubling a, struct inverse_doubling b) {
+    return b.noise * a.wanted > a.noise * b.wanted ? b : a;
+}
+
 /// The error that is farthest from what the samples are to make it: as small as was asked for, or a
 /// small part of what is off.
-static struct inverse_doubling find_noisiest(const struct inversion_state *state) {
-    struct inverse_doubling noisiest = mf_inversion_kirkwood_buff_noise(state);
+static struct inverse_doubling find_noisiest(const struct inversion_state *state, int doublings) {
+    struct inverse_doubling noisiest =
+        noisier(mf_inversion_kirkwood_buff_noise(state), mf_inversion_bulk_noise(state, doublings));
     for (int k = 0; k < state->assessment.sections; k++) {
         const struct inversion_section *section = &state->assessment.section[k];
         const double noises = sqrt(section->misfit / section->own_misfit);
         const double wanted =
             fmax(section->precision, find_share(state, section) * noises * section->own_noise);
-        if (section->own_noise * noisiest.wanted > noisiest.noise * wanted)
-            noisiest = (struct inverse_doubling){
-                .noise = section->own_noise, .wanted = wanted, .unit = ""};
+        noisiest = noisier(
+            noisiest,
+            (struct inverse_doubling){.noise = section->own_noise, .wanted = wanted, .unit = ""});
     }
     return noisiest;
 }
@@ -81,7 +87,7 @@ static struct inverse_doubling find_noisiest(const struct inversion_state *state
 /// Whether more samples help. Replicas that are stuck would never be distinguished from noise.
 static bool needs_samples(const struct inversion_state *state, struct inverse_doubling *doubling) {
     const int before = doubling->number;
-    *doubling = find_noisiest(state);
+    *doubling = find_noisiest(state, before);
     doubling->number = before + 1;
     doubling->max = MAX_DOUBLINGS;
     return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;

@@ -24,8 +24,11 @@ static void hear(void *context, const struct inverse_progress *progress) {
 }
 
 /// What is told of one iteration whose target is this g, 1 of the ideal gas, and that asks for this
-/// noise of it; returns the noise that is left.
-static double observe(double target, double precision, struct told *told) {
+/// noise of it, and for a pressure with such an error, if it is not 0; returns the noise that is
+/// left.
+/// @param[in,out] pressure  what is asked for, then that of the samples
+static double observe_with(double target, double precision, double *pressure, double pressure_error,
+                           struct told *told) {
     double g[BINS], error[BINS];
     struct fluid fluid;
     struct inversion *inversion = calloc(1, sizeof *inversion);
@@ -37,7 +40,10 @@ static double observe(double target, double precision, struct told *told) {
     }
     const struct inverse_problem problem = {
         .targets = {.bins = {0, 0.2, BINS},
-                    .target[TARGET_RDF] = {.count = BINS, .value = g, .error = error}},
+                    .target = {[TARGET_RDF] = {.count = BINS, .value = g, .error = error},
+                               [TARGET_PRESSURE] = {.count = pressure_error > 0,
+                                                    .value = pressure,
+                                                    .error = &pressure_error}}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
         .scene = fluid.setup,
         .core_threshold = 1e-3,
@@ -56,10 +62,16 @@ static double observe(double target, double precision, struct told *told) {
     assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
     assert_ok(mf_inversion_observe(inversion, &(struct inverse_listener){hear, told}));
     const double noise = inversion->assessment.own_noise;
+    if (pressure)
+        *pressure = inversion->state->bulk.pressure;
     mf_inversion_destroy(inversion);
     free(inversion);
     fluid_clear(&fluid);
     return noise;
+}
+
+static double observe(double target, double precision, struct told *told) {
+    return observe_with(target, precision, NULL, 0, told);
 }
 
 static void test_no_doubling_is_told_where_the_first_samples_are_enough(void **state) {
@@ -117,12 +129,34 @@ static void test_bins_with_few_pairs_do_not_decide(void **state) {
     assert_int_equal(told.words, REPLICAS);
 }
 
+/// Where g asks for no more samples, a pressure does, until its error is that of its target; what
+/// is asked for more exactly than all samples tell costs a few doublings.
+static void test_a_pressure_doubles_samples(void **state) {
+    enum { MOST = 4 };
+    (void)state;
+    static struct told told;
+    double pressure = 1;
+    observe_with(0.99, 1, &pressure, 10, &told);
+    assert_int_equal(told.words, REPLICAS);
+    const double wanted = pressure; // so that the first samples meet it
+    observe_with(0.99, 1, &pressure, 1e-9, &told);
+    assert_int_equal(told.words, REPLICAS + MOST * (1 + REPLICAS));
+    for (int k = REPLICAS; k < told.words; k++)
+        assert_string_equal(told.word[k].doubling.unit, "k_B T_0/lambda^d");
+    const double error = told.word[REPLICAS].doubling.noise;
+    pressure = wanted;
+    observe_with(0.99, 1, &pressure, error / 1.7, &told);
+    print_message("error of the pressure %.3g, %d words\n", error, told.words);
+    assert_in_range(told.words, REPLICAS + 1 + REPLICAS, REPLICAS + 3 * (1 + REPLICAS));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_no_doubling_is_told_where_the_first_samples_are_enough),
         cmocka_unit_test(test_doublings_tell_a_noise_that_falls_to_what_is_wanted),
         cmocka_unit_test(test_doublings_end_with_the_last_that_was_told),
         cmocka_unit_test(test_bins_with_few_pairs_do_not_decide),
+        cmocka_unit_test(test_a_pressure_doubles_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
