@@ -114,11 +114,11 @@ class Piece:
         (self.folder / "partial").rename(self.folder / self.asked["trajectory"])  # whole or not at all
 
     def _check_unit(self, places: Array) -> None:
-        """Places of a frame in the edges of its box, which beads fill; as of frames that are read."""
-        spread = np.sqrt(12 * np.var(places, axis=0))
-        if len(places) > 1 and (spread.max() < 0.3 or (self.before is None and spread.min() > 4)):
-            raise InputError(f"positions: the beads are spread over {spread.max():.2g} of the box along "
-                             f"each axis: look at the unit of their positions, that of the run file")
+        """Places of a frame in the edges of its box; as of frames that are read."""
+        farthest, spread = np.abs(places).max(), np.sqrt(12 * np.var(places, axis=0)).min()
+        if len(places) > 1 and (farthest < 0.12 or (self.before is None and spread > 4)):
+            raise InputError(f"positions: the beads are spread over {min(farthest, spread):.2g} of the box "
+                             f"along each axis: look at the unit of their positions, that of the run file")
 
     def _names(self, beads: int) -> list[str]:
         types = self.asked["beads"]

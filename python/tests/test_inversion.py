@@ -88,6 +88,14 @@ def test_positions_in_another_unit_are_noticed(tmp_path):
         assert not piece.told
 
 
+def test_a_droplet_may_be_small(tmp_path):
+    inversion = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out")
+    for piece in inversion.pieces:
+        piece.tell(0.15 * gas(piece) + 1)
+    inversion.go_on()
+    assert inversion.pieces[0].asked["piece"] == 2
+
+
 def test_boxes_of_constant_pressure_are_told(tmp_path):
     run = run_file(tmp_path)
     run["target"]["density"] = {"value": 200 / 64, "error": 0.05}

@@ -278,22 +278,24 @@ static double place_along(const struct engine_frames *frames, const struct engin
            (place[0] * row[0] + place[1] * row[1] + place[2] * row[2]);
 }
 
-/// Beads that fill their box have places with a standard deviation of 1/sqrt(12) of it; in another
-/// unit it is a tenth or ten times as much. Those of a beginning have not gone far.
+/// In a unit that is ten times as large all places are within a tenth of the box from its origin,
+/// where no droplet happens to be; in one that is ten times smaller they spread over ten boxes.
+/// Those of a beginning have not gone far.
 static enum status check_units(const struct engine_frames *frames,
                                const struct engine_sample *sample) {
-    static const double least = 0.3, most = 4;
-    double narrowest = INFINITY, widest = 0;
+    static const double least = 0.12, most = 4;
+    double narrowest = INFINITY, farthest = 0;
     for (int d = 0; d < sample->box.dimensions; d++) {
         struct running_mean places = {0};
-        for (size_t bead = 0; bead < frames->beads; bead++)
-            mf_statistics_add(&places, place_along(frames, sample, frames->atom[bead], d) /
-                                           sample->box.length[d]);
-        const double spread = sqrt(12 * places.squares / places.count);
-        narrowest = fmin(narrowest, spread);
-        widest = fmax(widest, spread);
+        for (size_t bead = 0; bead < frames->beads; bead++) {
+            const double place =
+                place_along(frames, sample, frames->atom[bead], d) / sample->box.length[d];
+            mf_statistics_add(&places, place);
+            farthest = fmax(farthest, fabs(place));
+        }
+        narrowest = fmin(narrowest, sqrt(12 * places.squares / places.count));
     }
-    const bool small = widest < least, large = frames->fresh && narrowest > most;
+    const bool small = farthest < least, large = frames->fresh && narrowest > most;
     if (frames->beads < 2 || !(small || large))
         return STATUS_OK;
     if (frames->run->later)
@@ -302,7 +304,7 @@ static enum status check_units(const struct engine_frames *frames,
         STATUS_BAD_INPUT,
         "%s: frame %zu: the beads are spread over %.2g of the box along each axis: "
         "look at the unit of their positions",
-        frames->file, frames->frame.number, small ? widest : narrowest);
+        frames->file, frames->frame.number, small ? farthest : narrowest);
 }
 
 /// Samples of replicas, and of times, differ.

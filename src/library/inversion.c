@@ -232,28 +232,30 @@ static enum status check_numbers(const char *name, const double *values, size_t 
     return STATUS_OK;
 }
 
-/// As of frames that are read (engines/engine_frames.c): beads that fill their box have places with
-/// a standard deviation of 1/sqrt(12) of it. Those of a beginning have not gone far.
+/// As of frames that are read (engines/engine_frames.c): in another unit the first one is within a
+/// tenth of the box from its origin, or spreads over ten. Those of a beginning have not gone far.
 static enum status check_unit(const struct mesofit_piece *piece,
                               const struct mesofit_samples *samples) {
-    static const double least = 0.3, most = 4;
+    static const double least = 0.12, most = 4;
     const double *box = samples->boxes ? samples->boxes : piece->box;
-    double narrowest = INFINITY, widest = 0;
+    double narrowest = INFINITY, farthest = 0;
     for (int d = 0; d < piece->dimensions; d++) {
         struct running_mean places = {0};
-        for (size_t bead = 0; bead < piece->beads; bead++)
-            mf_statistics_add(
-                &places, samples->positions[bead * (size_t)piece->dimensions + (size_t)d] / box[d]);
-        const double spread = sqrt(12 * places.squares / places.count);
-        narrowest = fmin(narrowest, spread);
-        widest = fmax(widest, spread);
+        for (size_t bead = 0; bead < piece->beads; bead++) {
+            const double place =
+                samples->positions[bead * (size_t)piece->dimensions + (size_t)d] / box[d];
+            mf_statistics_add(&places, place);
+            farthest = fmax(farthest, fabs(place));
+        }
+        narrowest = fmin(narrowest, sqrt(12 * places.squares / places.count));
     }
-    if (piece->beads < 2 || (widest >= least && (piece->before || narrowest <= most)))
+    const bool small = farthest < least, large = piece->before == NULL && narrowest > most;
+    if (piece->beads < 2 || !(small || large))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "positions: the beads are spread over %.2g of the box along each axis: "
                           "look at the unit of their positions, that of the run file",
-                          widest < least ? widest : narrowest);
+                          small ? farthest : narrowest);
 }
 
 static enum status check_samples(const struct mesofit_piece *piece,
