@@ -68,20 +68,23 @@ static void print_context(const struct export_job *job, FILE *stream) {
 }
 
 /// OpenMM tells no virial: the pressure is by the energies of a box that is a little larger, and
-/// smaller.
+/// smaller, if twice the cutoff still fits, which OpenMM asks for.
 static void print_pressure(FILE *stream) {
     fprintf(stream,
             "def pressure_of(state):\n"
             "    places = state.getPositions(asNumpy=True)._value\n"
             "    edges = state.getPeriodicBoxVectors(asNumpy=True)._value\n"
-            "    energy, change = [], 1e-4\n"
-            "    for scale in 1 + change, 1 - change, 1: # the last one as it was\n"
+            "    energy, high = [], 1 + 1e-4\n"
+            "    fits = 2 * max(p[3] for p in pairs) / edges.diagonal().min() * (1 + 1e-9)\n"
+            "    low = min(1, max(1 - 1e-4, fits))\n"
+            "    for scale in high, low, 1: # the last one as it was\n"
             "        context.setPeriodicBoxVectors(*(scale * edges))\n"
             "        context.setPositions(scale * places)\n"
             "        energy.append(context.getState(getEnergy=True).getPotentialEnergy()._value)\n"
             "    volume = state.getPeriodicBoxVolume()._value\n"
             "    return (2 * state.getKineticEnergy()._value / 3\n"
-            "            - (energy[0] - energy[1]) / (6 * change)) / volume * pressure_unit\n\n\n");
+            "            - (energy[0] - energy[1]) / (3 * (high - low))) / volume * pressure_unit"
+            "\n\n\n");
 }
 
 /// Frames in extended XYZ, in nm and ps, and lines of energies.

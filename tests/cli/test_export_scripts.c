@@ -7,6 +7,7 @@
 #include "shared/exported_molecules.h"
 #include "shared/lammps_runs.h"
 #include "shared/length.h"
+#include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -286,6 +287,40 @@ static void test_openmm_is_told_our_friction(void **state) {
     fclose(stream);
 }
 
+// Pressure ----------------------------------------------------------------------------------------
+
+/// OpenMM refuses a box below two cutoffs; its pressure is by what boxes beside that of the scene
+/// tell.
+static void test_openmm_has_a_pressure_where_two_cutoffs_just_fit(void **state) {
+    static struct run_program_result result;
+    double step, temperature, pressure, sum = 0;
+    int lines = 0;
+    char line[256];
+    skip_without("openmm");
+    small_inputs_write(*state, "scene.json", rubbing, "[2, 2, 2]", "[1.2, 1.2, 1.2]");
+    small_inputs_change(*state, "scene.json", "\"equilibration\": 20, \"samples\": 2",
+                        "\"equilibration\": 500, \"samples\": 400");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "openmm", "-o", "openmm");
+    run_program_assert_code(&result, 0);
+    assert_int_equal(system("cd openmm && PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 run.py 2000 "
+                            ">run.out 2>error"),
+                     0);
+    FILE *stream = fopen("openmm/run.out", "r");
+    assert_non_null(stream);
+    while (fgets(line, sizeof line, stream))
+        if (sscanf(line, "%lf %lf %lf", &step, &temperature, &pressure) == 3) {
+            sum += pressure;
+            lines++;
+        }
+    fclose(stream);
+    const double ours = results_number("out/summary.json", "pressure");
+    print_message("pressure %.4g, ours %.4g bar\n", sum / lines, ours);
+    assert_int_equal(lines, 100);
+    assert_true(fabs(sum / lines / ours - 1) < 0.1);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, small_inputs_enter, small_inputs_leave)
 
 int main(void) {
@@ -295,6 +330,7 @@ int main(void) {
         TEST(test_scripts_of_hoomd_and_espresso_have_those_of_our_laws),
         TEST(test_openmm_has_our_molecules),
         TEST(test_openmm_is_told_our_friction),
+        TEST(test_openmm_has_a_pressure_where_two_cutoffs_just_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
