@@ -3,7 +3,8 @@
 """An engine for `mesofit fit run.json --engine "python3 metropolis.py"`: Metropolis moves of single beads of one type.
 
 It reads engine.json and potential.tsv in the folder where it is started, and leaves the frames and last.npy, from
-which the next piece goes on. A "time step" is a sweep: one move of every bead. The run file is in reduced units.
+which the next piece goes on. A "time step" is a sweep: one move of every bead. The run file is in reduced units, or in
+nm and ps.
 """
 import json
 import os
@@ -15,6 +16,9 @@ box = numpy.array(asked["box"])
 BEADS = sum(asked["beads"].values())
 r, phi, _ = numpy.loadtxt("potential.tsv", unpack=True)
 random = numpy.random.default_rng(asked["seed"])
+in_nm = "[nm]" in open("potential.tsv").readline()
+BOLTZMANN = 8.31446261815324e-3 if in_nm else 1  # kJ/mol/K
+UNITS = "nm-ps" if in_nm else "lj"
 
 
 def energy(place, others):
@@ -40,7 +44,7 @@ def sweep(places, longest):
         others = numpy.delete(places, k, axis=0)
         trial = (places[k] + longest * (random.random(len(box)) - 0.5)) % box
         change = energy(trial, others) - energy(places[k], others)
-        if change <= 0 or random.random() < numpy.exp(-change / asked["temperature"]):
+        if change <= 0 or random.random() < numpy.exp(-change / (BOLTZMANN * asked["temperature"])):
             places[k] = trial
             taken += 1
     return taken / len(places)
@@ -55,6 +59,6 @@ with open(asked["trajectory"], "w") as out:
     for _ in range(asked["frames"]):
         for _ in range(asked["every"]):
             sweep(places, longest)
-        out.write('%d\nLattice="%s" Properties=species:S:1:pos:R:3\n' % (BEADS, lattice))
+        out.write('%d\nLattice="%s" Properties=species:S:1:pos:R:3 Units=%s\n' % (BEADS, lattice, UNITS))
         out.writelines("A %.9g %.9g %.9g\n" % tuple(place) for place in places)
 numpy.save("last.npy", places)
