@@ -128,6 +128,19 @@ static enum status read_groups(const struct inverse_problem *problem,
     return STATUS_OK;
 }
 
+/// A pressure that is a target is met.
+static enum status meet_pressure(const struct inverse_problem *problem,
+                                 struct force_solution *solution) {
+    const struct target *const target = &problem->targets.target[TARGET_PRESSURE];
+    const struct simulation_setup *const scene = &problem->scene;
+    const double ideal = (double)mf_composition_particles(&scene->composition) *
+                         scene->temperature / mf_box_volume(&scene->box);
+    if (target->count == 0)
+        return STATUS_OK;
+    return mf_force_solution_meet(solution, problem->forces, target->value[0] - ideal,
+                                  target->error ? target->error[0] : 0);
+}
+
 enum status mf_force_matching_find(const struct inverse_problem *problem,
                                    const struct potential_grid *grid, double *phi, double *error,
                                    struct force_potentials *found) {
@@ -137,6 +150,7 @@ enum status mf_force_matching_find(const struct inverse_problem *problem,
         TRY_ARRAY(unused, grid->points);
     TRY_ARRAY(weight, problem->forces->size);
     TRY(mf_force_solve(problem->forces, problem->scene.temperature, &solution));
+    TRY(meet_pressure(problem, &solution));
     const struct reading from = {problem->forces, &solution, weight};
     TRY(read_pairs(problem, grid, &from, phi, error ? error : unused));
     TRY(read_groups(problem, grid, &from, phi, error ? error : unused));

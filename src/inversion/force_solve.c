@@ -29,28 +29,14 @@ static void work_clear(struct force_work *w) {
     gsl_vector_free(w->found);
 }
 
-/// G or b of all blocks.
-static double total(const struct force_equations *equations, const double *blocks, size_t row,
-                    size_t numbers) {
-    double sum = 0;
-    for (size_t b = 0; b < force_equations_blocks(equations); b++)
-        sum += blocks[b * numbers + row];
-    return sum;
-}
-
-static double total_gram(const struct force_equations *equations, size_t k, size_t l) {
-    const size_t row = k >= l ? k * (k + 1) / 2 + l : l * (l + 1) / 2 + k;
-    return total(equations, equations->gram, row, force_equations_entries(equations));
-}
-
 // The equations -----------------------------------------------------------------------------------
 
 /// The nodes of a curve from the first to the last that have been seen; all of a circle.
 static void find_known(struct force_work *w, const struct force_curve *curve) {
     size_t begin = curve->first, end = curve->first + curve->nodes;
-    while (begin < end && !(total_gram(w->equations, begin, begin) > 0))
+    while (begin < end && !(force_work_gram(w->equations, begin, begin) > 0))
         begin++;
-    while (end > begin && !(total_gram(w->equations, end - 1, end - 1) > 0))
+    while (end > begin && !(force_work_gram(w->equations, end - 1, end - 1) > 0))
         end--;
     if (begin < end && force_work_is_circle(curve)) {
         begin = curve->first;
@@ -83,18 +69,18 @@ static void fill(struct force_work *w) {
     static const double unseen = 1e-3; // nodes between others
     double largest = 0;
     for (size_t k = 0; k < w->count; k++) {
-        w->scale[k] = sqrt(total_gram(w->equations, w->place[k], w->place[k]));
+        w->scale[k] = sqrt(force_work_gram(w->equations, w->place[k], w->place[k]));
         largest = fmax(largest, w->scale[k]);
     }
     for (size_t k = 0; k < w->count; k++)
         w->scale[k] = w->scale[k] > 0 ? w->scale[k] : unseen * largest;
     for (size_t k = 0; k < w->count; k++) {
         const double b =
-            total(w->equations, w->equations->product, w->place[k], w->equations->size);
+            force_work_total(w->equations, w->equations->product, w->place[k], w->equations->size);
         gsl_vector_set(w->product, k, b / w->scale[k]);
         for (size_t l = 0; l < w->count; l++)
             gsl_matrix_set(w->gram, k, l,
-                           total_gram(w->equations, w->place[k], w->place[l]) /
+                           force_work_gram(w->equations, w->place[k], w->place[l]) /
                                (w->scale[k] * w->scale[l]));
     }
 }
@@ -282,19 +268,6 @@ done:
     return status;
 }
 
-/// Share of Σ F² that the forces are: (2 b·c − c·G c)/Σ F².
-static double find_explained(const struct force_work *w, const double *value) {
-    const struct force_equations *const e = w->equations;
-    double sum = 0;
-    for (size_t a = 0; a < w->count; a++) {
-        const size_t k = w->place[a];
-        sum += 2 * value[k] * total(e, e->product, k, e->size);
-        for (size_t b = 0; b < w->count; b++)
-            sum -= value[k] * value[w->place[b]] * total_gram(e, k, w->place[b]);
-    }
-    return sum / e->square;
-}
-
 static enum status keep(struct force_work *w, struct force_solution *solution) {
     gsl_linalg_cholesky_invert(w->matrix);
     solution->directions = 0;
@@ -310,7 +283,7 @@ static enum status keep(struct force_work *w, struct force_solution *solution) {
             solution->directions += covariance * inform;
         }
     }
-    solution->explained = find_explained(w, solution->value);
+    solution->explained = mf_force_equations_share(w->equations, solution->value);
     return solve_coarse(w, solution->coarse);
 }
 

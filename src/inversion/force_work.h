@@ -25,6 +25,20 @@ struct force_work {
     double strength[FORCES_MAX_CURVES];
 };
 
+/// G, b or w of all blocks.
+static inline double force_work_total(const struct force_equations *equations, const double *blocks,
+                                      size_t row, size_t numbers) {
+    double sum = 0;
+    for (size_t b = 0; b < force_equations_blocks(equations); b++)
+        sum += blocks[b * numbers + row];
+    return sum;
+}
+
+static inline double force_work_gram(const struct force_equations *equations, size_t k, size_t l) {
+    const size_t row = k >= l ? k * (k + 1) / 2 + l : l * (l + 1) / 2 + k;
+    return force_work_total(equations, equations->gram, row, force_equations_entries(equations));
+}
+
 /// Eigenvalues of G that are smaller, of the largest, are rounding.
 static inline bool force_work_is_determined(const struct force_work *w, size_t k) {
     return gsl_vector_get(w->values, k) > 1e-11 * gsl_vector_get(w->values, 0);

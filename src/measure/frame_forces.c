@@ -27,6 +27,7 @@ void mf_frame_forces_clear(struct frame_forces *forces) {
     mf_memory_free(forces->way);
     mf_memory_free(forces->gram);
     mf_memory_free(forces->product);
+    mf_memory_free(forces->virial);
     *forces = (struct frame_forces){0};
 }
 
@@ -46,6 +47,7 @@ static enum status reserve(struct frame_forces *forces, const struct frame_force
     TRY_ARRAY(forces->way, 3 * beads_at_once(plan) * equations->size);
     TRY_ARRAY(forces->gram, force_equations_entries(equations));
     TRY_ARRAY(forces->product, equations->size);
+    TRY_ARRAY(forces->virial, equations->size);
     return STATUS_OK;
 }
 
@@ -59,9 +61,9 @@ struct work {
 };
 
 /// Add `factor` times a force of 1 at q along a way to the X of a bead, if it is one of those that
-/// are looked at.
+/// are looked at, and its part of the virial.
 static void add(const struct work *work, size_t bead, const struct force_curve *curve, double q,
-                const double way[3], double factor) {
+                const double way[3], double factor, double virial) {
     const size_t size = work->plan->equations.size;
     size_t node, next;
     double share;
@@ -73,6 +75,8 @@ static void add(const struct work *work, size_t bead, const struct force_curve *
         row[node] += (1 - share) * factor * way[d];
         row[next] += share * factor * way[d];
     }
+    work->forces->virial[node] += (1 - share) * virial;
+    work->forces->virial[next] += share * virial;
 }
 
 /// A pair of beads, or what takes it away again.
@@ -87,8 +91,8 @@ static void add_pair(const struct work *work, const struct cell_pairs_batch *bat
     const double r = sqrt(square);
     const int pair = mf_composition_pair_of_ids(composition, (uint32_t)i, (uint32_t)j);
     const struct force_curve *const curve = &work->plan->equations.curve[curve_of_pair(pair)];
-    add(work, i, curve, r, way, -sign / r);
-    add(work, j, curve, r, way, sign / r);
+    add(work, i, curve, r, way, -sign / r, 0.5 * sign * r);
+    add(work, j, curve, r, way, sign / r, 0.5 * sign * r);
 }
 
 static bool is_looked_at(const struct work *work, size_t bead) {
@@ -144,13 +148,14 @@ static void add_term(const struct work *work, int order, int group, const size_t
     struct bonded_batch batch;
     measure_term(work->forces, kind, bead, place, &batch);
     const double q = batch.q[0];
-    batch.slope[0] = -1; // of U, so that the force is 1
+    const double virial = kind->is_length ? 0.5 * q : 0; // angles do not change with the box
+    batch.slope[0] = -1;                                 // of U, so that the force is 1
     kind->push(&batch);
     for (int a = 0; a < kind->arms; a++) {
         double way[3];
         bonded_take(batch.arm[a], 0, way);
-        add(work, bead[kind->arm[a].from], curve, q, way, 1);
-        add(work, bead[kind->arm[a].to], curve, q, way, -1);
+        add(work, bead[kind->arm[a].from], curve, q, way, 1, virial);
+        add(work, bead[kind->arm[a].to], curve, q, way, -1, virial);
     }
 }
 
@@ -246,6 +251,7 @@ enum status mf_frame_forces_find(struct frame_forces *forces, const struct frame
     TRY(mf_cell_pairs_sort(&forces->search, box, place, count, plan->cutoff));
     memset(forces->gram, 0, force_equations_entries(&plan->equations) * sizeof(double));
     memset(forces->product, 0, size * sizeof(double));
+    memset(forces->virial, 0, size * sizeof(double));
     forces->square = 0;
     for (forces->begin = 0; forces->begin < count; forces->begin = forces->end) {
         const size_t end = forces->begin + beads_at_once(plan);
@@ -258,6 +264,8 @@ enum status mf_frame_forces_find(struct frame_forces *forces, const struct frame
         }
         sum_up(forces, plan, beads);
     }
+    for (size_t k = 0; k < size; k++)
+        forces->virial[k] /= 3 * box->volume;
     return STATUS_OK;
 }
 

@@ -30,15 +30,15 @@ void mf_frame_forces_end(struct frame_forces_plan *plan);
 /// Memory of one thread, used again for every frame; all zero is none.
 struct frame_forces {
     struct cell_pairs search;
-    double *way;            ///< X: shape [beads at a time, 3, unknowns]
-    size_t begin, end;      ///< beads of which it is
-    double *gram, *product; ///< of the frame
-    double square;          ///< Σ F²
+    double *way;                     ///< X: shape [beads at a time, 3, unknowns]
+    size_t begin, end;               ///< beads of which it is
+    double *gram, *product, *virial; ///< of the frame
+    double square;                   ///< Σ F²
 };
 
 void mf_frame_forces_clear(struct frame_forces *forces);
 
-/// Find G and b of a frame. Fails: NO_MEMORY. Threads: one a struct frame_forces. Tested:
+/// Find G, b and w of a frame. Fails: NO_MEMORY. Threads: one a struct frame_forces. Tested:
 /// test_frame_forces, against the obvious sums.
 enum status mf_frame_forces_find(struct frame_forces *forces, const struct frame_forces_plan *plan,
                                  const struct box_vectors *box,

@@ -51,7 +51,7 @@ enum status mf_measured_forces_look(const struct measured *measured, struct meas
 void mf_measured_forces_add(struct measured *measured, const struct measured_slot *slot) {
     if (are_asked_for(measured) && slot->beads.has_forces)
         mf_force_equations_add(&measured->forces.equations, slot->forces.gram, slot->forces.product,
-                               slot->forces.square);
+                               slot->forces.virial, slot->forces.square);
 }
 
 enum status mf_measured_forces_check(const struct measured *measured, const char *file) {

@@ -22,6 +22,7 @@ enum status mf_force_equations_init(struct force_equations *equations,
     }
     NEW_ARRAY(equations->gram, FORCES_BLOCKS * force_equations_entries(equations));
     NEW_ARRAY(equations->product, FORCES_BLOCKS * equations->size);
+    NEW_ARRAY(equations->virial, FORCES_BLOCKS * equations->size);
 done:
     if (status != STATUS_OK)
         mf_force_equations_clear(equations);
@@ -32,6 +33,7 @@ void mf_force_equations_clear(struct force_equations *equations) {
     mf_memory_free(equations->curve);
     mf_memory_free(equations->gram);
     mf_memory_free(equations->product);
+    mf_memory_free(equations->virial);
     *equations = (struct force_equations){0};
 }
 
@@ -61,18 +63,21 @@ static void join(double *block, size_t numbers) {
 }
 
 void mf_force_equations_add(struct force_equations *equations, const double *gram,
-                            const double *product, double square) {
+                            const double *product, const double *virial, double square) {
     const size_t entries = force_equations_entries(equations), size = equations->size;
     if (equations->frames == FORCES_BLOCKS * equations->each) {
         join(equations->gram, entries);
         join(equations->product, size);
+        join(equations->virial, size);
         equations->each *= 2;
     }
     const size_t block = equations->frames / equations->each;
     for (size_t k = 0; k < entries; k++)
         equations->gram[block * entries + k] += gram[k];
-    for (size_t k = 0; k < size; k++)
+    for (size_t k = 0; k < size; k++) {
         equations->product[block * size + k] += product[k];
+        equations->virial[block * size + k] += virial[k];
+    }
     equations->square += square;
     equations->frames++;
 }
@@ -93,6 +98,7 @@ void mf_force_equations_scale(struct force_equations *equations, double length, 
         double *entry = equations->gram + b * force_equations_entries(equations);
         for (size_t k = 0; k < equations->size; k++) {
             equations->product[b * equations->size + k] *= factor[k];
+            equations->virial[b * equations->size + k] *= factor[k] * pow(length, 3) / energy;
             for (size_t l = 0; l <= k; l++)
                 *entry++ *= factor[k] * factor[l];
         }

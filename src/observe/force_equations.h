@@ -5,9 +5,10 @@
 /// The force on a bead is written as Σ_k c_k X_k, with −dΦ/dr of a pair, or −dU/dq of a bond, an
 /// angle or a dihedral, a straight line between nodes, at which it is c_k. Over all beads and
 /// frames the squares of what is left of the forces are least where G c = b, with
-/// G_kl = Σ X_k·X_l and b_k = Σ X_k·F. Neighbouring frames are joined to blocks, twice as many in
-/// each whenever all blocks are taken, so that memory does not grow with the trajectory; the
-/// scatter of the blocks tells the noise.
+/// G_kl = Σ X_k·X_l and b_k = Σ X_k·F. Their pressure is ρ k_B T + ⟨w⟩·c, w_k being the virial of
+/// X_k by d V. Neighbouring frames are joined to blocks, twice as many in each whenever all blocks
+/// are taken, so that memory does not grow with the trajectory; the scatter of the blocks tells the
+/// noise.
 #pragma once
 
 #include "base/status.h"
@@ -44,6 +45,7 @@ struct force_equations {
     double square;       ///< Σ F² of all frames
     double *gram;        ///< shape [FORCES_BLOCKS, size (size + 1)/2]: k (k + 1)/2 + l, l ≤ k
     double *product;     ///< b, shape [FORCES_BLOCKS, size]
+    double *virial;      ///< w [1/λ²; of angles 1/λ³], shape [FORCES_BLOCKS, size]
 };
 
 /// Entries of G.
@@ -67,12 +69,12 @@ void mf_force_equations_clear(struct force_equations *equations);
 bool mf_force_equations_find(const struct force_curve *curve, double q, size_t *node, size_t *next,
                              double *share);
 
-/// Add a frame. @param[in] gram, product, square  of it
+/// Add a frame. @param[in] gram, product, virial, square  of it
 void mf_force_equations_add(struct force_equations *equations, const double *gram,
-                            const double *product, double square);
+                            const double *product, const double *virial, double square);
 
-/// Write b with the nodes as `file`, and G as `gram_file`, in nm and kJ/mol: rows are unknowns or
-/// entries, columns blocks. Fails: IO, NO_MEMORY.
+/// Write b and w with the nodes as `file`, and G as `gram_file`, in nm and kJ/mol: rows are
+/// unknowns or entries, columns blocks. Fails: IO, NO_MEMORY.
 enum status mf_force_equations_write(const struct force_equations *equations, const char *file,
                                      const char *gram_file) MUST_USE;
 

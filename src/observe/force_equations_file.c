@@ -31,7 +31,7 @@ static enum status note(struct bytes *text, const char *format, ...) {
 
 static enum status describe(const struct force_equations *equations, struct bytes *text) {
     TRY(note(text, "Normal equations of forces [nm, rad, kJ/mol], summed over blocks of frames: b "
-                   "at the nodes"));
+                   "at the nodes, and the virial of the nodes by 3 V"));
     TRY(note(text, "frames %zu %zu beads %.0f square %.17g", equations->frames, equations->each,
              equations->beads, equations->square));
     for (size_t n = 0; n < equations->curves; n++) {
@@ -44,20 +44,39 @@ static enum status describe(const struct force_equations *equations, struct byte
 
 enum { BLOCK_NAME = 24 };
 
-/// @param[in] before  columns that stand before those of blocks, or NULL
-static enum status write(const struct force_equations *equations, const char *file,
-                         const char *comment, const double *before, const double *numbers,
-                         size_t rows) {
-    struct data_column column[FORCES_BLOCKS + 1];
-    char name[FORCES_BLOCKS][BLOCK_NAME];
-    size_t columns = 0;
-    if (before)
-        column[columns++] = (struct data_column){"q[nm or rad]", before, NULL};
-    for (size_t b = 0; b < force_equations_blocks(equations); b++) {
-        snprintf(name[b], BLOCK_NAME, "block_%zu", b + 1);
-        column[columns++] = (struct data_column){name[b], numbers + b * rows, "%.15g"};
+/// Columns of a table.
+struct columns {
+    struct data_column column[2 * FORCES_BLOCKS + 1];
+    char name[2 * FORCES_BLOCKS][BLOCK_NAME];
+    size_t count;
+};
+
+/// Columns "what_1", …: numbers of blocks.
+static void add_blocks(struct columns *columns, const char *what, size_t blocks,
+                       const double *numbers, size_t rows) {
+    for (size_t b = 0; b < blocks; b++) {
+        char *const name = columns->name[columns->count - 1];
+        snprintf(name, BLOCK_NAME, "%s_%zu", what, b + 1);
+        columns->column[columns->count++] = (struct data_column){name, numbers + b * rows, "%.15g"};
     }
-    return mf_data_table_write(file, comment, column, columns, rows);
+}
+
+static enum status write_products(const struct force_equations *equations, const char *file,
+                                  const char *comment, const double *q) {
+    const size_t blocks = force_equations_blocks(equations);
+    struct columns columns = {.column = {{"q[nm or rad]", q, NULL}}, .count = 1};
+    add_blocks(&columns, "block", blocks, equations->product, equations->size);
+    add_blocks(&columns, "virial", blocks, equations->virial, equations->size);
+    return mf_data_table_write(file, comment, columns.column, columns.count, equations->size);
+}
+
+static enum status write_gram(const struct force_equations *equations, const char *file) {
+    const size_t rows = force_equations_entries(equations);
+    struct columns columns = {.count = 1}; // none stands before those of blocks
+    add_blocks(&columns, "block", force_equations_blocks(equations), equations->gram, rows);
+    return mf_data_table_write(file,
+                               "G of the same unknowns: rows (1, 1), (2, 1), (2, 2), (3, 1), …",
+                               columns.column + 1, columns.count - 1, rows);
 }
 
 enum status mf_force_equations_write(const struct force_equations *equations, const char *file,
@@ -71,10 +90,8 @@ enum status mf_force_equations_write(const struct force_equations *equations, co
             q[equations->curve[n].first + k] =
                 equations->curve[n].low + (double)k * equations->curve[n].width;
     CHECK(describe(equations, &text));
-    CHECK(write(equations, file, (const char *)text.data, q, equations->product, equations->size));
-    CHECK(write(equations, gram_file,
-                "G of the same unknowns: rows (1, 1), (2, 1), (2, 2), (3, 1), …", NULL,
-                equations->gram, force_equations_entries(equations)));
+    CHECK(write_products(equations, file, (const char *)text.data, q));
+    CHECK(write_gram(equations, gram_file));
 done:
     mf_memory_free(q);
     mf_source_free(&text);
@@ -125,7 +142,7 @@ static enum status read_heading(struct force_equations *equations, const struct 
     }
     const size_t blocks = each ? (frames + each - 1) / each : 0;
     if (curves == 0 || nodes > FORCES_MAX_NODES || nodes != table->rows || blocks == 0 ||
-        blocks > FORCES_BLOCKS || blocks + 1 != table->columns || !(square > 0))
+        blocks > FORCES_BLOCKS || 2 * blocks + 1 != table->columns || !(square > 0))
         return fail(file, "its heading does not fit its rows and columns");
     TRY(mf_force_equations_init(equations, curve, curves));
     equations->frames = frames;
@@ -135,10 +152,10 @@ static enum status read_heading(struct force_equations *equations, const struct 
     return STATUS_OK;
 }
 
-/// Columns from `first` on, shape [blocks, rows].
-static void take(const struct data_table *table, size_t first, double *numbers) {
+/// So many columns from `first` on, shape [blocks, rows].
+static void take(const struct data_table *table, size_t first, size_t blocks, double *numbers) {
     for (size_t row = 0; row < table->rows; row++)
-        for (size_t b = 0; b + first < table->columns; b++)
+        for (size_t b = 0; b < blocks; b++)
             numbers[b * table->rows + row] = table->values[row * table->columns + first + b];
 }
 
@@ -147,10 +164,12 @@ enum status mf_force_equations_read(struct force_equations *equations, const cha
     CLEARED_BY(mf_data_table_clear) struct data_table table = {0}, gram = {0};
     TRY(mf_data_table_read(&table, file, 2));
     TRY(read_heading(equations, &table, file));
-    take(&table, 1, equations->product);
+    const size_t blocks = force_equations_blocks(equations);
+    take(&table, 1, blocks, equations->product);
+    take(&table, 1 + blocks, blocks, equations->virial);
     TRY(mf_data_table_read(&gram, gram_file, 1));
-    if (gram.rows != force_equations_entries(equations) || gram.columns + 1 != table.columns)
+    if (gram.rows != force_equations_entries(equations) || gram.columns != blocks)
         return fail(gram_file, "its rows and columns are not those of the other file");
-    take(&gram, 0, equations->gram);
+    take(&gram, 0, blocks, equations->gram);
     return STATUS_OK;
 }

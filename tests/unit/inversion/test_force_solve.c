@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Forces of a known law with noise that neighbouring frames share: they come back within their
-// errors, which fall as one over the root of the number of frames.
+// errors, which fall as one over the root of the number of frames; a pressure is met.
 #include "base/rng.h"
 #include "inversion/force_solve.h"
 #include "measure/frame_forces.h"
@@ -91,7 +91,7 @@ static struct gas *measure(uint32_t seed, size_t frames) {
         assert_ok(
             mf_frame_forces_find(&gas->forces, &gas->plan, &gas->box, &gas->frame, gas->place));
         mf_force_equations_add(&gas->plan.equations, gas->forces.gram, gas->forces.product,
-                               gas->forces.square);
+                               gas->forces.virial, gas->forces.square);
     }
     return gas;
 }
@@ -163,6 +163,75 @@ static void test_errors_fall_with_the_number_of_frames(void **state) {
     assert_true(all[0] / all[1] < 5.7);
 }
 
+/// U of a frame in a box whose edge is `stretch` times as long.
+static double energy_of(const struct gas *gas, double stretch) {
+    double sum = 0;
+    for (size_t i = 0; i < BEADS; i++)
+        for (size_t j = 0; j < i; j++) {
+            double square = 0;
+            for (int d = 0; d < 3; d++) {
+                const double way = gas->position[i][d] - gas->position[j][d];
+                square += pow(stretch * (way - edge * rint(way / edge)), 2);
+            }
+            sum += sqrt(square) < cutoff ? potential_of(sqrt(square)) : 0;
+        }
+    return sum;
+}
+
+/// w·c of the law against −dU/dV by a difference.
+static void test_virial_is_the_slope_of_the_energy(void **state) {
+    static const double small = 1e-4;
+    (void)state;
+    struct gas *gas = measure(3, 1);
+    const double volume = pow(edge, 3);
+    const double slope = (energy_of(gas, 1 + small) - energy_of(gas, 1 - small)) /
+                         (volume * (pow(1 + small, 3) - pow(1 - small, 3)));
+    double virial = 0;
+    for (size_t k = 0; k <= BINS; k++)
+        virial += gas->plan.equations.virial[k] * law_of((double)k * cutoff / BINS);
+    print_message("virial %.4f, slope of the energy %.4f\n", virial, -slope);
+    assert_true(fabs(virial + slope) < 0.005 * fabs(slope));
+    clear(gas);
+}
+
+static double virial_of(const struct gas *gas, const struct force_solution *solution) {
+    const struct force_equations *const equations = &gas->plan.equations;
+    double sum = 0;
+    for (size_t b = 0; b < force_equations_blocks(equations); b++)
+        for (size_t k = 0; k < equations->size; k++)
+            sum += equations->virial[b * equations->size + k] * solution->value[k];
+    return sum / (double)equations->frames;
+}
+
+/// The pressure that is asked for is had, at little cost, and its direction is known as it is.
+static void test_a_pressure_is_met(void **state) {
+    static const double more = 0.3;
+    struct force_solution free, met, loose;
+    double error[3];
+    (void)state;
+    struct gas *gas = measure(5, FRAMES);
+    assert_ok(mf_force_solve(&gas->plan.equations, 1, &free));
+    assert_ok(mf_force_solve(&gas->plan.equations, 1, &met));
+    assert_ok(mf_force_solve(&gas->plan.equations, 1, &loose));
+    const double before = virial_of(gas, &free);
+    assert_ok(mf_force_solution_meet(&met, &gas->plan.equations, before + more, 0));
+    assert_ok(mf_force_solution_meet(&loose, &gas->plan.equations, before + more, more));
+    assert_true(fabs(virial_of(gas, &met) - before - more) < 1e-9);
+    assert_true(fabs(virial_of(gas, &loose) - before - more) < 1e-9);
+    assert_true(met.explained < free.explained && met.explained > free.explained - 0.01);
+    find_potential(gas, &free, BINS / 2, &error[0]);
+    find_potential(gas, &met, BINS / 2, &error[1]);
+    find_potential(gas, &loose, BINS / 2, &error[2]);
+    print_message("share %.4f and %.4f, errors %.3f and %.3f\n", free.explained, met.explained,
+                  error[0], error[1]);
+    assert_true(error[1] > 0.3 * error[0] && error[1] < 3 * error[0]);
+    assert_true(error[2] > 2 * error[1]);
+    mf_force_solution_clear(&free);
+    mf_force_solution_clear(&met);
+    mf_force_solution_clear(&loose);
+    clear(gas);
+}
+
 static void test_few_frames_tell_no_errors(void **state) {
     struct force_solution solution;
     (void)state;
@@ -175,6 +244,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_known_law_comes_back_within_its_errors),
         cmocka_unit_test(test_errors_fall_with_the_number_of_frames),
+        cmocka_unit_test(test_virial_is_the_slope_of_the_energy),
+        cmocka_unit_test(test_a_pressure_is_met),
         cmocka_unit_test(test_few_frames_tell_no_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
