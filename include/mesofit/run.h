@@ -37,6 +37,7 @@ struct mesofit_frame {
     double box[9];           /**< its vectors a, b, c, one behind the other; zeros: there is none */
     const double *positions; /**< shape [atoms, 3] */
     const double *velocities; /**< the same, or NULL */
+    const double *forces;     /**< the same [kJ/mol by the unit of length], or NULL */
 };
 
 /** Fill in frame `number`, whose arrays must stay until the next call. Called by the thread that

@@ -195,12 +195,15 @@ class Frames:
     ----------
     positions : array, shape (frames, particles, 3), or a function
         Or ``positions(number)``, which gives the frame of that number, from 0 on, as a dict with
-        "positions" and, if there are, "box", "time" and "velocities"; None behind the last.
+        "positions" and, if there are, "box", "time", "velocities" and "forces"; None behind the
+        last.
     box : array, shape (3,), (6,), (3, 3), or one of these for each frame
         Edges; edges and angles in degrees; vectors, one a row. Without one nothing is periodic.
     types : sequence of str
         Names of the particles. Without `residues` each is a bead, called by its type.
     velocities : array, shape (frames, particles, 3), optional
+    forces : array, shape (frames, particles, 3), optional
+        In kJ/mol by the unit of length.
     times : array, shape (frames,), optional
         Without them there is no motion to be measured.
     residues : sequence of int, optional
@@ -224,8 +227,8 @@ class Frames:
     name = "<frames>"
 
     def __init__(self, positions: Any, box: Any = None, *, types: Any = None,
-                 velocities: Any = None, times: Any = None, residues: Any = None,
-                 residue_names: Any = None, masses: Any = None,
+                 velocities: Any = None, forces: Any = None, times: Any = None,
+                 residues: Any = None, residue_names: Any = None, masses: Any = None,
                  length: str | float = "nm", time: str | float = "ps",
                  count: int | None = None, particles: int | None = None) -> None:
         self.fault: BaseException | None = None
@@ -237,7 +240,7 @@ class Frames:
             self.particles = particles if particles is not None else (
                 len(types) if types is not None else 0)
         else:
-            self._keep_arrays(positions, box, velocities, times)
+            self._keep_arrays(positions, box, velocities, forces, times)
         if self.particles <= 0:
             raise InputError("frames: types, or the number of particles, are required")
         self._names = _names(types if types is not None else ["A"] * self.particles,
@@ -252,10 +255,12 @@ class Frames:
             raise InputError("residue_names: residues are required, too")
         self._masses = None if masses is None else numbers(masses, "masses", (self.particles,))
 
-    def _keep_arrays(self, positions: Any, box: Any, velocities: Any, times: Any) -> None:
+    def _keep_arrays(self, positions: Any, box: Any, velocities: Any, forces: Any,
+                     times: Any) -> None:
         at = numbers(positions, "positions", (None, None, 3))
         self.count, self.particles = at.shape[0], at.shape[1]
         speed = None if velocities is None else numbers(velocities, "velocities", at.shape)
+        push = None if forces is None else numbers(forces, "forces", at.shape)
         when = None if times is None else numbers(times, "times", (self.count,))
         given = np.zeros((3, 3)) if box is None else array_of(box, "box")
         each = given.ndim > 1 and given.shape != (3, 3)
@@ -266,6 +271,7 @@ class Frames:
         def get(number: int) -> dict[str, Any]:
             return {"positions": at[number], "box": boxes[number] if each else boxes,
                     "velocities": None if speed is None else speed[number],
+                    "forces": None if push is None else push[number],
                     "time": None if when is None else when[number]}
         self._get = get
 
@@ -289,9 +295,9 @@ class Frames:
         if isinstance(got, np.ndarray):
             got = {"positions": got}
         positions = numbers(got["positions"], "positions", (self.particles, 3))
-        velocities = got.get("velocities")
-        if velocities is not None:
-            velocities = numbers(velocities, "velocities", (self.particles, 3))
+        velocities, forces = (
+            None if got.get(what) is None else numbers(got[what], what, (self.particles, 3))
+            for what in ("velocities", "forces"))
         time = got.get("time")
         frame.time = math.nan if time is None else float(array_of(time, "time"))
         if time is not None and not math.isfinite(frame.time):
@@ -299,7 +305,8 @@ class Frames:
         frame.box[:] = _box(got.get("box")).reshape(9).tolist()
         frame.positions = pointer(positions)
         frame.velocities = None if velocities is None else pointer(velocities)
-        self._held = positions, velocities
+        frame.forces = None if forces is None else pointer(forces)
+        self._held = positions, velocities, forces
 
     def _lend(self) -> c.Trajectory:
         self.fault, self._first = None, None
@@ -350,9 +357,9 @@ def from_universe(source: Any) -> Frames:
 
     def get(number: int) -> dict[str, Any]:
         step = trajectory[number]
-        has = getattr(step, "has_velocities", False)
         return {"positions": atoms.positions, "box": step.dimensions, "time": step.time,
-                "velocities": atoms.velocities if has else None}
+                "velocities": atoms.velocities if getattr(step, "has_velocities", False) else None,
+                "forces": atoms.forces if getattr(step, "has_forces", False) else None}
 
     count = len(atoms)
     names = _attribute(atoms, "names")

@@ -54,7 +54,7 @@ class Text(Structure):
 
 class Frame(Structure):
     _fields_ = [("time", c_double), ("box", c_double * 9), ("positions", NUMBERS),
-                ("velocities", NUMBERS)]
+                ("velocities", NUMBERS), ("forces", NUMBERS)]
 
 
 FRAME_READER = CFUNCTYPE(c_int, c_void_p, c_size_t, POINTER(Frame))

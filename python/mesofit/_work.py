@@ -341,7 +341,7 @@ def measure(trajectory: Any, structure: PathLike | None = None, *,
         r_0 and r_c of the distribution of densities around each bead, by a weight from 1 to 0, and
         where its bins end, the same for all states that are fitted together.
     forces : float, optional [nm]
-        Keep what "force-matching" needs, of pairs up to there, from the forces of a file.
+        Keep what "force-matching" needs, of pairs up to there, from the forces of a trajectory.
     window : float, optional [ps]
         Of MSD, VACF and escape times; else a tenth of the time, 100 frames at most.
     escape : float, optional [nm]

@@ -54,7 +54,7 @@ def water(tmp_path_factory):
 
 
 class Step:
-    has_velocities = False
+    has_velocities = has_forces = False
 
     def __init__(self, frame):
         self.time = frame["time"]
@@ -66,14 +66,14 @@ class Trajectory:
     """That of a fake Universe, which is where it was asked to be."""
 
     def __init__(self, frames):
-        self.frames, self.frame = frames, 2
+        self.frames, self.frame, self.make = frames, 2, Step
         self.step = Step(frames[2])
 
     def __len__(self):
         return len(self.frames)
 
     def __getitem__(self, number):
-        self.frame, self.step = number, Step(self.frames[number])
+        self.frame, self.step = number, self.make(self.frames[number])
         return self.step
 
 
@@ -150,6 +150,50 @@ def test_arrays_and_functions_are_the_same(water):
     assert np.abs(measure(angstrom)["rdf"].values - expected).max() < 1e-3
 
 
+def test_forces_of_memory_are_those_of_a_file(water, tmp_path):
+    """Of an extended XYZ in eV and angstrom, of arrays in nm, and of a Universe in angstrom."""
+    frames, _ = water
+    joule, random = 96.48533212, np.random.default_rng(5)  # kJ/mol of an eV
+    many = [{**frames[0], "positions": frames[0]["positions"] + 0.01 * random.normal(
+        size=frames[0]["positions"].shape)} for _ in range(9)]
+    forces = random.normal(size=(9, len(many[0]["names"]), 3))
+    types = [name[0] for name in many[0]["names"]]
+    edges = 10 * many[0]["box"]
+    with open(tmp_path / "water.xyz", "w", encoding="ascii") as file:
+        for frame, force in zip(many, forces):
+            file.write(f"{len(types)}\nLattice=\"{edges[0]} 0 0 0 {edges[1]} 0 0 0 {edges[2]}\" "
+                       "Properties=species:S:1:pos:R:3:forces:R:3:masses:R:1\n")
+            for name, at, push in zip(types, 10 * frame["positions"], force):
+                numbers = " ".join(repr(float(x)) for x in [*at, *push])
+                file.write(f"{name} {numbers} 1\n")
+    keys = dict(static=True, forces=0.5, temperature=300, bins=60, range=0.9, q_range=0)
+    of_file = mesofit.measure(tmp_path / "water.xyz", folder=tmp_path / "file", **keys)
+    positions = np.array([frame["positions"] for frame in many])
+    arrays = mesofit.Frames(positions, many[0]["box"], types=types, forces=10 * joule * forces,
+                            masses=[1.0] * len(types))
+    mesofit.measure(arrays, folder=tmp_path / "arrays", **keys)
+
+    class ForcedStep(Step):
+        has_forces = True
+
+    universe = Universe([{**frame, "names": types} for frame in many])
+    universe.trajectory.make = ForcedStep
+    type(universe.atoms).forces = property(
+        lambda atoms: joule * forces[atoms.universe.trajectory.frame])
+    universe.atoms.resnames = np.array(types, dtype=object)
+    universe.atoms.resindices = np.arange(len(types))
+    type(universe.atoms).masses = property(lambda atoms: np.ones(len(types)))
+    mesofit.measure(universe, folder=tmp_path / "universe", **keys)
+    assert of_file.summary["particles"] == len(types)
+    expected = np.loadtxt(tmp_path / "file" / "forces.tsv")
+    for folder in ("arrays", "universe"):
+        found = np.loadtxt(tmp_path / folder / "forces.tsv")
+        assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+    with pytest.raises(mesofit.InputError, match="has no forces"):
+        mesofit.measure(mesofit.Frames(positions, many[0]["box"], types=types,
+                               masses=[1.0] * len(types)), **keys)
+
+
 def test_ideal_gas_of_two_types_in_a_sheared_box_is_flat():
     random = np.random.default_rng(3)
     box = np.array([[4, 0, 0], [1, 4, 0], [0.5, -1, 4.0]])
@@ -184,6 +228,7 @@ def test_fault_of_a_function_is_the_callers():
     (dict(positions=np.zeros((3, 2, 3)), box=np.ones((2, 3))), "2 boxes of 3 frames"),
     (dict(positions=np.zeros((1, 2, 3)), box=[1, 1, 1, 20, 20, 150]), "no box of the angles"),
     (dict(positions=np.zeros((1, 2, 3)), times=[1, 2]), "times: expected shape"),
+    (dict(positions=np.zeros((1, 2, 3)), forces=np.zeros((1, 2))), "forces: expected shape"),
     (dict(positions=np.zeros((1, 2, 3)), residues=[1]), "residues: 1 of 2"),
     (dict(positions=np.zeros((1, 2, 3)), residue_names=["A", "B"]), "residues are required"),
     (dict(positions=np.zeros((1, 2, 3)), length="inch"), "inch"),

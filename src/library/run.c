@@ -66,6 +66,7 @@ static enum status read_frame(void *context, size_t number, struct trajectory_me
     memcpy(frame->box, given.box, sizeof given.box);
     frame->positions = given.positions;
     frame->velocities = given.velocities;
+    frame->forces = given.forces;
     return STATUS_OK;
 }
 

@@ -20,6 +20,7 @@ enum xyz_column {
     XYZ_POSITION, ///< three columns
     XYZ_VELOCITY, ///< three columns
     XYZ_MOMENTUM, ///< three columns, in the unit of ASE
+    XYZ_FORCE,    ///< three columns
     XYZ_MASS,
     XYZ_ID,
     XYZ_MOLECULE,
@@ -44,12 +45,26 @@ static const struct {
     enum xyz_column column;
     int64_t width;
 } known_columns[] = {
-    {"name", XYZ_LABEL, 1},         {"species", XYZ_NAME, 1},        {"element", XYZ_NAME, 1},
-    {"type", XYZ_NAME, 1},          {"pos", XYZ_POSITION, 3},        {"position", XYZ_POSITION, 3},
-    {"positions", XYZ_POSITION, 3}, {"velo", XYZ_VELOCITY, 3},       {"vel", XYZ_VELOCITY, 3},
-    {"velocity", XYZ_VELOCITY, 3},  {"velocities", XYZ_VELOCITY, 3}, {"momenta", XYZ_MOMENTUM, 3},
-    {"mass", XYZ_MASS, 1},          {"masses", XYZ_MASS, 1},         {"id", XYZ_ID, 1},
-    {"mol", XYZ_MOLECULE, 1},       {"molecule", XYZ_MOLECULE, 1},   {"molid", XYZ_MOLECULE, 1},
+    {"name", XYZ_LABEL, 1},
+    {"species", XYZ_NAME, 1},
+    {"element", XYZ_NAME, 1},
+    {"type", XYZ_NAME, 1},
+    {"pos", XYZ_POSITION, 3},
+    {"position", XYZ_POSITION, 3},
+    {"positions", XYZ_POSITION, 3},
+    {"velo", XYZ_VELOCITY, 3},
+    {"vel", XYZ_VELOCITY, 3},
+    {"velocity", XYZ_VELOCITY, 3},
+    {"velocities", XYZ_VELOCITY, 3},
+    {"momenta", XYZ_MOMENTUM, 3},
+    {"force", XYZ_FORCE, 3},
+    {"forces", XYZ_FORCE, 3},
+    {"mass", XYZ_MASS, 1},
+    {"masses", XYZ_MASS, 1},
+    {"id", XYZ_ID, 1},
+    {"mol", XYZ_MOLECULE, 1},
+    {"molecule", XYZ_MOLECULE, 1},
+    {"molid", XYZ_MOLECULE, 1},
 };
 
 /// Take the next key=value; a word without a value is one with an empty value.
@@ -157,7 +172,7 @@ static const char *read_comment(struct xyz_comment *comment, const char *line) {
     *comment = (struct xyz_comment){.periodic = {true, true, true},
                                     .time = NAN,
                                     .step = -1,
-                                    .column = {0, -1, 1, -1, -1, -1, -1, -1},
+                                    .column = {0, -1, 1, -1, -1, -1, -1, -1, -1},
                                     .columns = 4};
     while (next_pair(&line, &key, &value)) {
         const char *const fault = read_pair(comment, &key, &value);
@@ -173,6 +188,9 @@ static const char *read_comment(struct xyz_comment *comment, const char *line) {
 /// sqrt(u eV), and masses only where they are not those of the elements: a speed of sqrt(eV/u) is
 /// sqrt(1.602176634e-19 J / 1.66053906892e-27 kg) [nm/ps].
 static const double ase_speed = 9.822694743;
+
+/// Forces of a file that says no units are in eV/Å, as ASE, QUIP and OVITO have them [kJ/mol/nm].
+static const double ase_force = 964.8533212;
 
 static bool recognise(const unsigned char *begin, size_t size) {
     char line[SOURCE_PEEK];
@@ -227,7 +245,7 @@ static enum status split(const struct xyz_comment *comment, const struct traject
             return mf_frame_fail_line(frame, line, "%d columns, expected %zu", k, comment->columns);
         for (int c = 0; c < XYZ_COLUMNS; c++) {
             const int place = k - comment->column[c];
-            const bool vector = c == XYZ_POSITION || c == XYZ_VELOCITY || c == XYZ_MOMENTUM;
+            const bool vector = c >= XYZ_POSITION && c <= XYZ_FORCE;
             const int width = vector ? 3 : 1;
             if (comment->column[c] >= 0 && place >= 0 && place < width)
                 known[c][place] = word;
@@ -256,11 +274,15 @@ static enum status describe_atom(const struct xyz_comment *comment,
     return STATUS_OK;
 }
 
-/// What the file or the user says; else the field's habit of Å, fs and u.
+/// What the file or the user says; else the field's habit of Å, fs, u, and eV/Å.
 static enum status find_units(struct trajectory *trajectory, const struct xyz_comment *comment) {
     if (comment->units[0] != '\0')
         return mf_trajectory_found_units(trajectory, comment->units);
-    return trajectory->scale.length > 0 ? STATUS_OK : mf_trajectory_found_units(trajectory, "real");
+    if (trajectory->scale.length > 0)
+        return STATUS_OK;
+    TRY(mf_trajectory_found_units(trajectory, "real"));
+    trajectory->scale.force = ase_force;
+    return STATUS_OK;
 }
 
 static enum status describe(struct trajectory *trajectory, struct trajectory_frame *first) {
@@ -311,6 +333,9 @@ static enum status read_atom(const struct trajectory *trajectory, struct traject
     if (frame->has_velocities &&
         !read_vector(known[momenta ? XYZ_MOMENTUM : XYZ_VELOCITY], speed, frame->velocity[atom]))
         return mf_frame_fail_line(frame, line, "a velocity is not a finite number");
+    if (frame->has_forces &&
+        !read_vector(known[XYZ_FORCE], trajectory->scale.force, frame->force[atom]))
+        return mf_frame_fail_line(frame, line, "a force is not a finite number");
     return STATUS_OK;
 }
 
@@ -335,6 +360,8 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     frame->time = comment.time * trajectory->scale.time;
     frame->step = comment.step;
     TRY(mf_frame_reserve(frame, trajectory->structure.atoms, has_velocities(trajectory, &comment)));
+    if (trajectory->forces && comment.column[XYZ_FORCE] >= 0)
+        TRY(mf_frame_reserve_forces(frame));
     TRY(mf_trajectory_begin_atoms(trajectory, frame));
     for (size_t k = 0; k < frame->atoms; k++, line = mf_frame_next_line(frame, line))
         TRY(read_atom(trajectory, frame, &comment, line, k));
@@ -389,7 +416,7 @@ const struct trajectory_format mf_format_xyz = {
     .name = "xyz",
     .extensions = extensions,
     .summary = "XYZ, plain or extended: Lattice, pbc, Time, Units, and of Properties name, pos, "
-               "velo, momenta, mass, id, mol",
+               "velo, momenta, forces, mass, id, mol",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .recognise = recognise,
     .fetch = fetch,

@@ -18,7 +18,7 @@ const struct trajectory_memory *mf_trajectory_memory_find(const char *name) {
 struct header {
     double time;      ///< [ps]
     double box[3][3]; ///< [nm]
-    bool has_velocities;
+    bool has_velocities, has_forces;
 };
 
 static size_t frame_size(const struct trajectory_memory *memory_files) {
@@ -45,7 +45,8 @@ static enum status open(struct trajectory *trajectory) {
     return STATUS_OK;
 }
 
-/// Append the numbers of all atoms in nm or nm/ps. Fails: BAD_INPUT if one is not finite.
+/// Append the numbers of all atoms in nm, nm/ps or kJ/mol/nm. Fails: BAD_INPUT if one is not
+/// finite.
 static enum status take(struct trajectory *trajectory, struct trajectory_frame *frame,
                         const double *numbers, double factor, const char *what) {
     const struct trajectory_memory *const memory_files =
@@ -80,6 +81,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     memset(&header, 0, sizeof header); // a digest is taken of it, padding and all
     header.time = from.time * memory_files->time;
     header.has_velocities = from.velocities != NULL;
+    header.has_forces = trajectory->forces && from.forces != NULL;
     for (int i = 0; i < 3; i++)
         for (int d = 0; d < 3; d++)
             header.box[i][d] = from.box[i][d] * memory_files->length;
@@ -90,6 +92,8 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     if (from.velocities)
         TRY(take(trajectory, frame, from.velocities, memory_files->length / memory_files->time,
                  "velocity"));
+    if (header.has_forces)
+        TRY(take(trajectory, frame, from.forces, 1 / memory_files->length, "force"));
     return STATUS_OK;
 }
 
@@ -119,9 +123,17 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
     frame->time = header.time;
     mf_frame_set_box(frame, (const double(*)[3])header.box);
     TRY(mf_frame_reserve(frame, atoms, header.has_velocities));
-    memcpy(frame->position, frame->raw.data + sizeof header, bytes);
-    if (header.has_velocities)
-        memcpy(frame->velocity, frame->raw.data + sizeof header + bytes, bytes);
+    const unsigned char *from = frame->raw.data + sizeof header;
+    memcpy(frame->position, from, bytes);
+    from += bytes;
+    if (header.has_velocities) {
+        memcpy(frame->velocity, from, bytes);
+        from += bytes;
+    }
+    if (!header.has_forces)
+        return STATUS_OK;
+    TRY(mf_frame_reserve_forces(frame));
+    memcpy(frame->force, from, bytes);
     return STATUS_OK;
 }
 

@@ -10,6 +10,7 @@ struct trajectory_memory_frame {
     double box[3][3];         ///< its vectors a, b, c, one a row; 0: none
     const double *positions;  ///< shape [atoms, 3]
     const double *velocities; ///< the same, or NULL
+    const double *forces;     ///< the same [kJ/mol by the length], or NULL
 };
 
 struct trajectory_memory {
