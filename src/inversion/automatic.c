@@ -7,7 +7,9 @@
 // once near the solution and leads away from far off it (its basin; P. Deuflhard, Newton Methods
 // for Nonlinear Problems (2004), section 2.1): where the samples know C it is tried, with the other
 // in reserve, each time that the error has halved since it led away; of groups only near their
-// targets.
+// targets. Where the target has forces, and no start is given, the fit begins with them, or with
+// what g(r) says, whichever is nearer: both are sampled. Of a liquid of pairs forces are near; the
+// mean forces of molecules need not be.
 #include "inversion/inversion_low_rank.h"
 #include "inversion/inversion.h"
 #include "inversion/inversion_intramolecular.h"
@@ -20,12 +22,13 @@
 /// Newton's steps are tried again where the error is this part of that at which they failed.
 static const double again = 0.5;
 
-static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]", "directions", NULL};
+static const char *const columns[] = {INVERSION_COLUMNS, "newton", "misfit[1]",
+                                      "directions",      "forces", NULL};
 
 /// Whether Newton's step is tried: near the noise, or where it has not failed yet.
 static bool may_be_in_basin(const struct inversion *inversion) {
     const struct inversion_progress *progress = &inversion->course.progress;
-    const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
+    const bool start = isinf(progress->best.distance[TARGET_RDF].rms) || progress->trial;
     return mf_inversion_is_near(inversion) ||
            (!start && !mf_potential_grid_has_terms(inversion_grid(inversion)) &&
             inversion->assessment.distance[TARGET_RDF].rms < again * progress->newton_failed_error);
@@ -56,6 +59,7 @@ static enum status newton_step(struct inversion *inversion, double *extra) {
 /// what several say together are the equations of the other.
 static enum status update(struct inversion *inversion, double *extra) {
     struct inversion_course *course = &inversion->course;
+    extra[3] = course->progress.from_forces && !course->progress.trial;
     if (inversion->states > 1)
         return newton_step(inversion, extra);
     if (!may_be_in_basin(inversion))
@@ -76,7 +80,7 @@ const struct inverse_method mf_automatic = {
     .summary =
         "hnc (ibi in two dimensions; with a low-rank response for mixtures and molecules) until "
         "the response is known, or the targets of groups are near, then imc",
-    .own = &(const struct inversion_rule){.update = update},
+    .own = &(const struct inversion_rule){.update = update, .weighs_starts = true},
     .knows_molecules = true,
     .meets_integrals = true,
     .knows_states = true,

@@ -36,11 +36,13 @@ struct inversion;
 /// taken from here if that one makes it worse; and up to INVERSION_OWN_COLUMNS columns. A method
 /// that is `memoryless` goes by the present samples alone, so that each of its potentials has their
 /// whole noise. One whose potentials are made of few coefficients, of which it measures the
-/// gradient, has `coefficients`: how many, by its parameters.
+/// gradient, has `coefficients`: how many, by its parameters. One that `weighs_starts` begins with
+/// the forces of a target that has them, tries the start that the target alone says after it, and
+/// goes on from the nearer of both.
 struct inversion_rule {
     enum status (*update)(struct inversion *inversion, double *extra);
     const struct inversion_basis_size *(*coefficients)(const void *parameters); ///< or NULL
-    bool memoryless;
+    bool memoryless, weighs_starts;
 };
 
 struct inversion {
@@ -152,6 +154,16 @@ enum status mf_inversion_start_of_molecules(struct inversion *inversion,
 /// mf_inversion_create. Tested: test_fit_base.
 enum status mf_inversion_start_curve(const struct inverse_problem *problem, double *curve,
                                      double *pressure) MUST_USE;
+
+/// Begin with forces if the method weighs starts, and the target has those of all that is unknown:
+/// else nothing changes. By the target of one state. Fails: as mf_inversion_start.
+enum status mf_inversion_start_weigh(struct inversion *inversion,
+                                     struct inversion_state *state) MUST_USE;
+
+/// Whether the start that the target alone says is tried next: the first was that of forces, and it
+/// is not so near that no other is needed.
+bool mf_inversion_start_has_trial(const struct inversion *inversion, bool kept);
+void mf_inversion_start_try(struct inversion *inversion);
 
 /// Whether there is another start to be tried: the first was the hypernetted chain's, a moment ago.
 bool mf_inversion_start_has_other(const struct inversion *inversion,

@@ -177,15 +177,39 @@ bool mf_inversion_keeps(struct inversion *inversion) {
     return kept || belied;
 }
 
+/// Keep the other start if it is nearer; else go on from the first.
+static enum status accept_trial(struct inversion *inversion, bool *kept) {
+    struct inversion_progress *progress = &inversion->course.progress;
+    const struct inversion_assessment *assessment = &inversion->assessment;
+    const struct targets *targets = &inversion->problem->targets;
+    const bool first = isinf(progress->best.distance[TARGET_RDF].rms);
+    *kept = !assessment->useless &&
+            (first || mf_inversion_assessment_noises(assessment, targets, assessment->distance) <
+                          mf_inversion_assessment_noises(assessment, targets, progress->min));
+    progress->trial = false;
+    progress->from_disorder = !*kept;
+    progress->lost = first && !*kept;
+    progress->from_forces = progress->from_forces && !*kept;
+    if (!*kept)
+        return first ? keep(inversion) : STATUS_OK; // to have something to show
+    progress->first_error = progress->second_error = progress->newton_failed_error =
+        assessment->distance[TARGET_RDF].rms;
+    memcpy(progress->min, assessment->distance, sizeof progress->min);
+    return keep(inversion);
+}
+
 enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->course.progress;
     const struct inversion_assessment *assessment = &inversion->assessment;
     const double error = assessment->distance[TARGET_RDF].rms;
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
+    if (progress->trial)
+        return accept_trial(inversion, kept);
     *kept = !assessment->useless && mf_inversion_keeps(inversion);
     progress->from_disorder = !*kept;
     progress->gave_up = assessment->unequilibrated.found && assessment->unequilibrated.for_long;
-    progress->lost = start && !*kept && !mf_inversion_start_is_poor(inversion, false);
+    progress->lost = start && !*kept && !mf_inversion_start_has_trial(inversion, false) &&
+                     !mf_inversion_start_is_poor(inversion, false);
     if (start && !*kept)
         return keep(inversion); // to have something to show
     if (start)
@@ -204,6 +228,12 @@ enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) 
 
 enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
     struct inversion_progress *progress = &inversion->course.progress;
+    if (mf_inversion_start_has_trial(inversion, kept)) {
+        if (!kept)
+            progress->best.distance[TARGET_RDF].rms = progress->min_decrement = INFINITY;
+        mf_inversion_start_try(inversion);
+        return STATUS_OK;
+    }
     if (!mf_inversion_start_is_poor(inversion, kept)) {
         mf_inversion_take_step(inversion);
         return STATUS_OK;

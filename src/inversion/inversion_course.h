@@ -44,11 +44,14 @@ struct inversion_progress {
     double newton_failed_error; ///< of g, from where a step with another in reserve led away, or
                                 ///< the first
     struct inversion_drifts drifts;
-    bool on_its_way;   ///< the last two keep one direction: what earlier iterations ask for, moved
-                       ///< by a response that changes on the way, would hold the fit back
-    bool second_start; ///< it began again, from −k_B T ln g
-    bool lost;         ///< none of the starts settled
-    bool gave_up;      ///< the last samples had not settled when they had cost enough
+    bool on_its_way;    ///< the last two keep one direction: what earlier iterations ask for, moved
+                        ///< by a response that changes on the way, would hold the fit back
+    bool second_start;  ///< it began again, from −k_B T ln g
+    bool lost;          ///< none of the starts settled
+    bool gave_up;       ///< the last samples had not settled when they had cost enough
+    bool weighs_starts; ///< the start that the target alone says is tried beside that of forces
+    bool trial;         ///< the present potential is that
+    bool from_forces;   ///< the start of the best was that of forces
 };
 
 /// Curves are of shape [points].

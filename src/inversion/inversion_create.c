@@ -135,6 +135,8 @@ enum status mf_inversion_create(void *memory, const struct inverse_method *metho
         &inversion->state[mf_inversion_states_widest(inversion->state, inversion->states)];
     if (widest > inversion->state) // that of the first state was made last
         TRY(mf_inversion_start(widest, inversion->course.phi));
+    TRY(mf_inversion_start_weigh(inversion, widest));
+    inversion->course.progress.from_forces = inversion->parameters.start == INVERSION_FROM_FORCES;
     return mf_inversion_reference(widest, inversion->course.reference);
 }
 

@@ -5,6 +5,7 @@
 #include "inversion/inversion_intramolecular.h"
 
 #include <math.h>
+#include <string.h>
 
 /// A start from the hypernetted chain is poor if its error of g is above this share of g* − 1 and
 /// it is under tension, so that it freezes or cavitates. Measured: 0.05 for water and 0.005 for a
@@ -154,6 +155,33 @@ enum status mf_inversion_start_of_molecules(struct inversion *inversion,
     TRY(mf_inversion_intramolecular_find(state, phi, listener));
     TRY(mf_inversion_reference(state, inversion->course.reference));
     return mf_inversion_start(state, phi);
+}
+
+enum status mf_inversion_start_weigh(struct inversion *inversion, struct inversion_state *state) {
+    struct inversion_parameters *const parameters = &inversion->parameters;
+    struct inversion_progress *const progress = &inversion->course.progress;
+    const struct inversion_rule *const rule = inversion->method->own;
+    if (!rule->weighs_starts || parameters->start != INVERSION_FROM_HNC || has_own(state) ||
+        state->problem->forces == NULL)
+        return STATUS_OK;
+    const enum status status = start_from_forces(state, inversion->course.phi);
+    if (status == STATUS_BAD_INPUT) // of other pairs or groups, or too few
+        return mf_inversion_start(state, inversion->course.phi);
+    parameters->start = INVERSION_FROM_FORCES;
+    progress->weighs_starts = true;
+    return status;
+}
+
+bool mf_inversion_start_has_trial(const struct inversion *inversion, bool kept) {
+    const struct inversion_progress *const progress = &inversion->course.progress;
+    return progress->weighs_starts && progress->iteration == 0 &&
+           !(kept && mf_inversion_is_near(inversion));
+}
+
+void mf_inversion_start_try(struct inversion *inversion) {
+    struct inversion_course *const course = &inversion->course;
+    memcpy(course->phi, course->reference, inversion_grid(inversion)->points * sizeof *course->phi);
+    course->progress.trial = course->progress.from_disorder = true;
 }
 
 /// rms of g* − 1.

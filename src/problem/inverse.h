@@ -209,7 +209,7 @@ extern const double mf_inverse_noise_margin;
 enum { INVERSE_FLAT = 2 };
 
 /// Numbers of a method's own in a row of the history, and characters of its reason.
-enum { INVERSE_EXTRA = 13, INVERSE_REASON_SIZE = 640 };
+enum { INVERSE_EXTRA = 14, INVERSE_REASON_SIZE = 640 };
 
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {
