@@ -383,6 +383,7 @@ enum status mf_frame_forces_begin(struct frame_forces_plan *plan, const struct b
         if (composition_is_mixed(composition))
             mf_composition_pair_name(composition, pair, own->name);
     }
+    TRY_ARRAY(plan->pushed, beads->atoms);
     TRY(mf_force_equations_init(&plan->equations, curve, curves));
     plan->equations.beads = (double)beads->atoms;
     return STATUS_OK;
@@ -390,4 +391,6 @@ enum status mf_frame_forces_begin(struct frame_forces_plan *plan, const struct b
 
 void mf_frame_forces_end(struct frame_forces_plan *plan) {
     mf_force_equations_clear(&plan->equations);
+    mf_memory_free(plan->pushed);
+    plan->pushed = NULL;
 }

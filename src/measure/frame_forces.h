@@ -15,6 +15,7 @@ struct frame_forces_plan {
     const struct frame_pairs_plan *pairs;       ///< which are pairs, as of g(r); borrowed
     const struct measured_molecules *molecules; ///< whose terms there are, or none; borrowed
     struct force_equations equations;           ///< of all frames
+    bool *pushed; ///< a bead had a force in one of the frames; shape [beads]
 };
 
 /// Choose the nodes: those of pairs as wide as the bins of g(r), or wider where there would be too

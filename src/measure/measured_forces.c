@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "measure/measured_forces.h"
 
+#include <math.h>
+
 static bool are_asked_for(const struct measured *measured) {
     return measured->plan.force_cutoff > 0;
 }
@@ -44,20 +46,48 @@ enum status mf_measured_forces_look(const struct measured *measured, struct meas
         return STATUS_OK;
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->forces.cutoff,
                                  "the range of --forces"));
-    return mf_frame_forces_find(&slot->forces, &measured->forces, &slot->box, &slot->beads,
-                                slot->place);
+    TRY(mf_frame_forces_find(&slot->forces, &measured->forces, &slot->box, &slot->beads,
+                             slot->place));
+    if (slot->forces.square > 0 && isfinite(slot->forces.square))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: %s", slot->beads.file,
+                          slot->beads.number,
+                          slot->forces.square > 0 ? "its forces are too large"
+                                                  : "all forces are 0: give frames that have them");
 }
 
 void mf_measured_forces_add(struct measured *measured, const struct measured_slot *slot) {
-    if (are_asked_for(measured) && slot->beads.has_forces)
-        mf_force_equations_add(&measured->forces.equations, slot->forces.gram, slot->forces.product,
-                               slot->forces.virial, slot->forces.square);
+    if (!are_asked_for(measured) || !slot->beads.has_forces)
+        return;
+    for (size_t k = 0; k < slot->beads.atoms; k++) {
+        const double *const force = slot->beads.force[k];
+        if (force[0] != 0 || force[1] != 0 || force[2] != 0)
+            measured->forces.pushed[k] = true;
+    }
+    mf_force_equations_add(&measured->forces.equations, slot->forces.gram, slot->forces.product,
+                           slot->forces.virial, slot->forces.square);
+}
+
+/// Those of a group that was not written are 0.
+static enum status check_beads(const struct measured *measured, const char *file) {
+    const size_t beads = (size_t)measured->forces.equations.beads;
+    size_t still = 0;
+    for (size_t k = 0; k < beads; k++)
+        still += !measured->forces.pushed[k];
+    if (still == 0)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: the forces of %zu of %zu beads are 0 in all frames: --forces needs "
+                          "those of all atoms, of which none is frozen",
+                          file, still, beads);
 }
 
 enum status mf_measured_forces_check(const struct measured *measured, const char *file) {
     const size_t frames = measured->forces.equations.frames;
-    if (!are_asked_for(measured) || frames >= MEASURED_FORCES_FEWEST)
+    if (!are_asked_for(measured))
         return STATUS_OK;
+    if (frames >= MEASURED_FORCES_FEWEST)
+        return check_beads(measured, file);
     if (frames == 0)
         return fail_without(file);
     return mf_status_fail(

@@ -158,7 +158,7 @@ static void assert_measure_refused(const char *part) {
     assert_contains(result.err, part);
 }
 
-/// Two atoms of types A and B in frames of a dump of LAMMPS.
+/// Three atoms of two elements in frames of a dump of LAMMPS.
 static void write_dump(struct temporary_folder *folder, int frames, const char *columns,
                        const char *a, const char *b) {
     static char text[1 << 14];
@@ -295,6 +295,15 @@ static void test_forces_that_cannot_be_matched_are_said(void **state) {
     write_dump(*state, 12, "fx fy fz", "1 2 3", "0 0 0");
     measure_dump();
     assert_measure_refused("a.dump: frame 0: the forces of all beads \"Xe\" are 0");
+    write_dump(*state, 12, "fx fy fz", "1e200 2 3", "2 1 0");
+    measure_dump();
+    assert_measure_refused("its forces are too large");
+    write_dump(*state, 12, "fx", "1", "2");
+    measure_dump();
+    assert_measure_refused("a.dump: has no forces, which --forces needs");
+    write_dump(*state, 1, "fx fy fz", "1 2 3", "2 1 0");
+    measure_dump();
+    assert_measure_refused("a.dump: 1 frame with forces tells no errors: --forces needs 8 or more");
     write_dump(*state, 2, "fx fy fz", "1 2 3", "2 1 0");
     measure_dump();
     assert_measure_refused("a.dump: 2 frames with forces tell no errors: --forces needs 8 or more");
@@ -306,6 +315,30 @@ static void test_forces_that_cannot_be_matched_are_said(void **state) {
     assert_measure_refused("the range of --forces");
     MEASURE("a.dump", "--file-units", "real", "--forces", "-1");
     assert_measure_refused("--forces takes a number above 0");
+}
+
+/// What a reader cannot see in one frame, or in the frames alone.
+static void test_forces_of_some_frames_and_atoms_are_said(void **state) {
+    static char text[1 << 14];
+    (void)state;
+    write_dump(*state, 12, "fx fy fz", "1 2 3", "2 1 0");
+    MEASURE("a.dump", "--forces", "1");
+    assert_measure_refused("a.dump: the file has no units: give them by --file-units");
+    FILE *file = fopen("a.dump", "r");
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    for (char *at = text; (at = strstr(at, "3 Ar 40 9 5 1 1 2 3")) != NULL; at++)
+        memcpy(at, "3 Ar 40 9 5 1 0 0 0", 19);
+    temporary_folder_write(*state, "a.dump", text, strlen(text));
+    measure_dump();
+    assert_measure_refused("a.dump: the forces of 1 of 3 beads are 0 in all frames");
+    for (char *at = strstr(text, "TIMESTEP\n11\n"); (at = strstr(at, " 1 2 3\n")) != NULL; at++)
+        memcpy(at, " 0 0 0", 6);
+    for (char *at = strstr(text, "TIMESTEP\n11\n"); (at = strstr(at, " 2 1 0\n")) != NULL; at++)
+        memcpy(at, " 0 0 0", 6);
+    temporary_folder_write(*state, "a.dump", text, strlen(text));
+    measure_dump();
+    assert_measure_refused("a.dump: frame 11: all forces are 0: give frames that have them");
 }
 
 static void test_a_fit_without_the_forces_is_refused(void **state) {
@@ -335,6 +368,7 @@ int main(void) {
         cmocka_unit_test(test_auto_goes_on_from_the_nearer_start),
         cmocka_unit_test(test_a_pressure_is_met),
         cmocka_unit_test(test_forces_that_cannot_be_matched_are_said),
+        cmocka_unit_test(test_forces_of_some_frames_and_atoms_are_said),
         cmocka_unit_test(test_a_fit_without_the_forces_is_refused),
     };
     return cmocka_run_group_tests(tests, enter, small_inputs_leave);
