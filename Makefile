@@ -74,7 +74,7 @@ $(RANKS): override CFLAGS += $(MPI_CFLAGS)
 
 SOURCES  = $(filter-out src/base/ranks.c $(LIVE_WITHOUT) $(if $(HDF5),src/trajectory/format_h5md_without.c,$(H5MD)),$(wildcard src/*/*.c))
 OBJECTS  = $(SOURCES:%.c=$(BUILD)/%.o)
-$(H5MD:%.c=$(BUILD)/%.o) $(patsubst %,$(BUILD)/tests/unit/trajectory/%_h5md.o,test_trajectory test_topology): \
+$(H5MD:%.c=$(BUILD)/%.o) $(patsubst %,$(BUILD)/tests/unit/trajectory/%_h5md.o,test_trajectory test_topology test_forces): \
     override CFLAGS += $(if $(HDF5),$(shell pkg-config --cflags $(HDF5)))
 $(BUILD)/src/trajectory/unpack.o $(BUILD)/tests/unit/trajectory/test_trajectory_packed.o: \
     override CFLAGS += $(if $(ZLIB),-DHAS_ZLIB) $(if $(ZSTD),-DHAS_ZSTD)
