@@ -95,19 +95,18 @@ static struct estimate difference(const double *values, const double *others, si
     return (struct estimate){mean.mean, mf_statistics_correlated_error(all, blocks, 1)};
 }
 
-/// Of windows from the shortest to the longest, the number of the first one that agrees with all
-/// that follow.
-static size_t choose(double (*values)[MAX_BLOCKS], size_t windows, size_t blocks) {
-    for (size_t w = 0; w + 1 < windows; w++) {
-        bool agrees = true;
-        for (size_t longer = w + 1; longer < windows; longer++) {
-            const struct estimate d = difference(values[longer], values[w], blocks);
-            agrees = agrees && fabs(d.mean) <= d.error;
-        }
-        if (agrees)
-            return w;
+/// What window w shows, with its error: its own noise, that of what the next doubling adds, in
+/// which as much may hide, and the largest difference from a longer window.
+static struct estimate judge(double (*values)[MAX_BLOCKS], size_t w, size_t windows,
+                             size_t blocks) {
+    const struct estimate found = difference(values[w], NULL, blocks);
+    double lacking = 0, hidden = found.error; // of the longest the next doubling is not known
+    for (size_t longer = windows - 1; longer > w; longer--) {
+        const struct estimate added = difference(values[longer], values[w], blocks);
+        lacking = fmax(lacking, fabs(added.mean));
+        hidden = added.error;
     }
-    return windows - 1;
+    return (struct estimate){found.mean, hypot(found.error, hypot(hidden, lacking))};
 }
 
 /// Whether the longest window differs from the one before by less than two errors.
@@ -137,6 +136,7 @@ static void write_curves(const struct green_kubo *green_kubo, size_t blocks,
 
 struct green_kubo_summary mf_green_kubo_result(const struct green_kubo *green_kubo,
                                                const struct green_kubo_curves *curves) {
+    static const double alike = 1.25;
     double values[MAX_WINDOWS][MAX_BLOCKS];
     size_t window[MAX_WINDOWS], windows = 1;
     const size_t blocks = complete_blocks(green_kubo);
@@ -151,16 +151,19 @@ struct green_kubo_summary mf_green_kubo_result(const struct green_kubo *green_ku
         write_curves(green_kubo, blocks, curves);
     if (blocks == 0)
         return (struct green_kubo_summary){.value = NAN, .error = NAN};
-    const size_t chosen = choose(values, windows, blocks);
-    const bool reached = chosen + 1 < windows;
-    const size_t taken = reached ? chosen + 1 : chosen;
-    const struct estimate found = difference(values[taken], NULL, blocks);
-    const struct estimate hidden = taken + 1 < windows
-                                       ? difference(values[taken + 1], values[taken], blocks)
-                                       : (struct estimate){0};
-    return (struct green_kubo_summary){.value = found.mean,
-                                       .error = hypot(found.error, 2 * hidden.error),
+    struct estimate found[MAX_WINDOWS] = {{0}};
+    double least = INFINITY;
+    size_t taken = 0;
+    for (size_t w = 0; w < windows; w++) {
+        found[w] = judge(values, w, windows, blocks);
+        least = fmin(least, found[w].error);
+    }
+    for (size_t w = 0; w < windows; w++)
+        taken = found[w].error <= alike * least ? w : taken;
+    return (struct green_kubo_summary){.value = found[taken].mean,
+                                       .error = found[taken].error,
                                        .window = window[taken],
-                                       .reached = reached || is_at_rest(values, windows, blocks),
+                                       .reached = taken + 1 < windows ||
+                                                  is_at_rest(values, windows, blocks),
                                        .blocks = (double)blocks};
 }
