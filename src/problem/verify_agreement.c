@@ -214,14 +214,48 @@ struct comparison {
     const struct target *target;
     const double *value, *error;
     double share;
-    bool counted; ///< values are counts
+    bool counted;                ///< values are counts
+    const struct rdf_bins *bins; ///< of g(r); NULL: of others
 };
 
 static struct comparison compare(const struct targets *targets, int kind,
                                  const struct observed *observed, double share) {
     const struct target *const target = &targets->target[kind];
-    return (struct comparison){target, observed->value[kind], observed->error[kind], share,
-                               kind == TARGET_RDF || target->block};
+    return (struct comparison){target,
+                               observed->value[kind],
+                               observed->error[kind],
+                               share,
+                               kind == TARGET_RDF || target->block,
+                               kind == TARGET_RDF ? &targets->bins : NULL};
+}
+
+/// What one count makes of value k, by the nearest of the values first … end − 1 that has counts;
+/// of g(r) as its shell of three dimensions is smaller. 0 if none has.
+static double value_of_count(const struct comparison *of, size_t k, size_t first, size_t end) {
+    size_t nearest = end;
+    for (size_t n = first; n < end; n++)
+        if (of->value[n] > 0 && of->error[n] > 0 &&
+            (nearest == end || (n < k ? k - n : n - k) < (nearest < k ? k - nearest : nearest - k)))
+            nearest = n;
+    if (nearest == end)
+        return 0;
+    const double there = of->error[nearest] * of->error[nearest] / of->value[nearest];
+    if (of->bins == NULL || !(of->bins->width > 0))
+        return there;
+    const size_t count = of->bins->count;
+    return there * pow(mf_rdf_bins_centre(of->bins, nearest % count) /
+                           mf_rdf_bins_centre(of->bins, k % count),
+                       2);
+}
+
+/// Of counts that are fewer than expected, or none, whose own error would be 0, it is that of those
+/// that the target expects.
+static double own_variance(const struct comparison *of, size_t k, size_t first, size_t end) {
+    const double error = known_or_0(of->error[k]), expected = fmax(0, of->target->value[k]);
+    if (!of->counted || !isfinite(expected) || !(of->value[k] < expected))
+        return error * error;
+    return of->value[k] > 0 ? error * error * expected / of->value[k]
+                            : expected * value_of_count(of, k, first, end);
 }
 
 /// What χ² is made of, with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins
@@ -235,7 +269,7 @@ static struct sums add_up(const struct comparison *of, size_t first, size_t end,
     struct sums sums = {0};
     for (size_t k = first; k < end; k++) {
         const double variance = target_variance(of->target, of->counted, k, of->value[k]) +
-                                (1 + of->share) * pow(known_or_0(of->error[k]), 2);
+                                (1 + of->share) * own_variance(of, k, first, end);
         const double common = common_error(of->target, k);
         const double difference = of->value[k] - of->target->value[k] - factor * common;
         if (!isfinite(difference) || !(variance > 0))

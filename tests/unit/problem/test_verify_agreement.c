@@ -149,6 +149,24 @@ static void test_agreement_takes_the_error_of_the_counts_that_are_expected(void 
     assert_close(agreement[TARGET_RDF].misfit, pow(18 / sqrt(20), 2) / BINS, 1e-12);
 }
 
+/// No pair where the target expects two, as a short verification has in bins that few pairs reach:
+/// the error is that of what is expected, not 0.
+static void test_agreement_takes_the_error_of_expected_counts_where_there_are_none(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 1e-6, 0.01, 50); // of ten thousand counts
+    of.targets.bins = (struct rdf_bins){.low = 0, .width = 0.01, .count = BINS};
+    of.wanted[9] = 2e-4;
+    of.value[9] = of.error[9] = 0;
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    const double expected = 2e-4 * 1e4 * pow(9.5 / 8.5, 2); // by the shell before it
+    assert_true(fabs(agreement[TARGET_RDF].misfit * BINS - expected) < 0.01 * expected);
+    assert_true(holds(&of, 0));
+    of.wanted[9] = 0.1; // a thousand
+    assert_false(holds(&of, 0));
+}
+
 /// A g that is too large by 1 % as a whole, of a factor that is known within 1 %: one deviation of
 /// one number, and by its bins alone 50 deviations. A wave as large is no factor.
 static void test_agreement_knows_that_the_factor_of_a_target_is_uncertain(void **state) {
@@ -344,6 +362,7 @@ int main(void) {
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit_in_the_pressure),
         cmocka_unit_test(test_agreement_is_wrong_in_one_of_a_thousand),
         cmocka_unit_test(test_agreement_takes_the_error_of_the_counts_that_are_expected),
+        cmocka_unit_test(test_agreement_takes_the_error_of_expected_counts_where_there_are_none),
         cmocka_unit_test(test_agreement_knows_that_the_factor_of_a_target_is_uncertain),
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit_where_a_value_is_not_known),
         cmocka_unit_test(test_agreement_is_bounded_where_the_inverse_of_f_fails),
