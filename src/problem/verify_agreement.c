@@ -422,9 +422,9 @@ static void assess_curve(const struct targets *targets, int kind,
     }
 }
 
-void mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
-                     const struct observed *observed, double noise,
-                     struct verify_agreement *agreement) {
+double mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
+                       const struct observed *observed, double noise,
+                       struct verify_agreement *agreement) {
     const double share = find_share(targets, observed, noise);
     size_t tests = sections->count;
     for (int kind = 0; kind < TARGETS; kind++) {
@@ -439,4 +439,5 @@ void mf_verify_agree(const struct targets *targets, const struct verify_sections
         if (sections->curve[kind].numbers > 0)
             assess_curve(targets, kind, &sections->curve[kind], observed, share, chance,
                          &agreement[kind]);
+    return share;
 }

@@ -76,12 +76,13 @@ enum status mf_verify_sections_find(const struct inverse_problem *problem,
                                     const struct observed *observed,
                                     struct verify_sections *sections) MUST_USE;
 
+/// Returns how many times the variance of what was observed is that of the fit's samples.
 /// @param[in]  noise      mf_targets_noise of the fit's last samples; 0: it has none
 /// @param[out] agreement  shape [TARGETS]
 /// Tested: test_verify_agreement.
-void mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
-                     const struct observed *observed, double noise,
-                     struct verify_agreement *agreement);
+double mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
+                       const struct observed *observed, double noise,
+                       struct verify_agreement *agreement);
 
 /// What replicas have measured together, how far that is from their targets, and the standard error
 /// of each rms: by leaving out one replica in turn (jackknife), of g(r) by leaving out blocks, of

@@ -170,32 +170,89 @@ static size_t values_of(const struct target *target) {
     return known;
 }
 
+/// Mean square of the errors of what was observed of a target.
+static double variance_of(const struct verification *v, const struct target *target, int kind) {
+    double sum = 0, known = 0;
+    for (size_t k = 0; k < target->count; k++) {
+        const double error = v->observed.error[kind][k];
+        if (!isfinite(error) || !isfinite(target->value[k]) ||
+            !isfinite(v->observed.value[kind][k]))
+            continue;
+        sum += error * error;
+        known++;
+    }
+    return known > 0 ? sum / known : 0;
+}
+
+/// Noise of a target, of its verification and of the fit's own samples.
+struct noises {
+    double both;   ///< of the first two
+    double own;    ///< of the verification
+    double of_fit; ///< 0: not fitted
+};
+
+static struct noises noises_of(const struct fit_file *fit, const struct verification *v, int kind) {
+    const double own = sqrt(variance_of(v, &fit->problem.compared.target[kind], kind));
+    const bool fitted = targets_ask(&fit->problem.targets, kind);
+    return (struct noises){v->distance[kind].noise, own, fitted ? sqrt(v->share) * own : 0};
+}
+
+/// ", with that of the fit's own samples 0.0045": what a right result may differ by.
+enum { OF_FIT_SIZE = 80 };
+static void describe_noise_of_fit(const struct noises *noises, double factor,
+                                  char text[OF_FIT_SIZE]) {
+    static const double seen = 1.1;
+    const double all = hypot(noises->both, noises->of_fit);
+    text[0] = '\0';
+    if (all > seen * noises->both)
+        snprintf(text, OF_FIT_SIZE, ", with that of the fit's own samples %.2g", factor * all);
+}
+
+/// A verification that is shorter than target and fit are exact.
+static void print_what_is_hidden(struct progress *to, const struct noises *noises, const char *name,
+                                 double factor, const char *unit) {
+    static const double short_of = 2;
+    const double of_target = sqrt(fmax(0, noises->both * noises->both - noises->own * noises->own));
+    const double others = hypot(of_target, noises->of_fit);
+    if (others > 0 && noises->own > short_of * others)
+        mf_progress_print(to,
+                          "short: the verification's own noise of %s is %.2g%s, %.2g times that of "
+                          "target and fit, and hides what is smaller; more "
+                          "\"verification.samples\" see it (left out, they are chosen)",
+                          name, factor * noises->own, unit, noises->own / others);
+}
+
+static void print_distance(struct progress *to, const struct fit_file *fit,
+                           const struct verification *v, int kind) {
+    const struct target_distance *distance = &v->distance[kind];
+    const char *own = mf_observable_kind(kind).target->unit, *unit = own ? own : "";
+    const double factor = mf_units_factor(&fit->scene.units, unit);
+    const bool fitted = targets_ask(&fit->problem.targets, kind);
+    const size_t known = values_of(&fit->problem.compared.target[kind]);
+    const struct noises noises = noises_of(fit, v, kind);
+    char rms[NUMBER_TEXT_SIZE], name[UNITS_NAME_SIZE] = "", of[96] = "", with[OF_FIT_SIZE];
+    if (factor != 1)
+        mf_units_suffix(&fit->scene.units, unit, name);
+    mf_number_text(factor * distance->rms, factor * v->distance_error[kind], rms);
+    if (distance->count < known)
+        snprintf(of, sizeof of, ", of %zu of its %zu values: no others were measured",
+                 distance->count, known);
+    describe_noise_of_fit(&noises, factor, with);
+    mf_progress_print(to, "verified%s: rms of %s - target = %s%s, statistics alone %.2g%s%s%s",
+                      v->by_engine ? " by the engine" : "", mf_targets_name(kind), rms, name,
+                      factor * noises.both, with, of,
+                      !(distance->rms > missed * noises.both) ? ""
+                      : fitted ? ": not met: nothing better was found"
+                               : ": not fitted, only compared");
+    if (fitted && known > 1)
+        print_what_is_hidden(to, &noises, mf_targets_name(kind), factor, name);
+}
+
 static void print_distances(struct progress *to, const struct fit_file *fit,
                             const struct verification *v) {
-    for (int kind = 0; kind < TARGETS; kind++) {
-        char rms[NUMBER_TEXT_SIZE];
-        if (!fit->files.given[kind])
-            continue;
-        const char *own = mf_observable_kind(kind).target->unit, *unit = own ? own : "";
-        const double factor = mf_units_factor(&fit->scene.units, unit);
-        char name[UNITS_NAME_SIZE] = "";
-        if (factor != 1)
-            mf_units_suffix(&fit->scene.units, unit, name);
-        mf_number_text(factor * v->distance[kind].rms, factor * v->distance_error[kind], rms);
-        const double noises = v->distance[kind].rms / v->distance[kind].noise;
-        const bool fitted = targets_ask(&fit->problem.targets, kind);
-        const size_t known = values_of(&fit->problem.compared.target[kind]);
-        char of[96] = "";
-        if (v->distance[kind].count < known)
-            snprintf(of, sizeof of, ", of %zu of its %zu values: no others were measured",
-                     v->distance[kind].count, known);
-        mf_progress_print(to, "verified%s: rms of %s - target = %s%s, statistics alone %.2g%s%s",
-                          v->by_engine ? " by the engine" : "", mf_targets_name(kind), rms, name,
-                          factor * v->distance[kind].noise, of,
-                          !(noises > missed) ? ""
-                          : fitted           ? ": not met: nothing better was found"
-                                             : ": not fitted, only compared");
-    }
+    for (int kind = 0; kind < TARGETS; kind++)
+        if (fit->files.given[kind])
+            print_distance(to, fit, v, kind);
 }
 
 static void print_diffusion(struct progress *to, const struct units *units,

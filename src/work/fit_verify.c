@@ -169,8 +169,8 @@ bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verificati
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
         struct verification *const own = &verification[s];
-        mf_verify_agree(&state->problem.targets, &own->sections, &own->observed, of_fit->noise[s],
-                        own->agreement);
+        own->share = mf_verify_agree(&state->problem.targets, &own->sections, &own->observed,
+                                     of_fit->noise[s], own->agreement);
     }
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
