@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+import filecmp
 import inspect
 import json
 import os
+import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Callable, Union
@@ -274,7 +276,7 @@ def fit_with(target: Any, keys: dict[str, Any], words: list[str],
     if isinstance(keys.get("method"), str):
         keys["method"] = {"name": keys["method"]}
     if isinstance(target, Result):
-        target = target.folder
+        target = _keep(target, folder, resume, force)
     if not isinstance(target, (Mapping, str, os.PathLike)):
         raise InputError(f"target: expected a result of measure, a dict or a path, found "
                          f"{type(target).__name__}")
@@ -285,6 +287,25 @@ def fit_with(target: Any, keys: dict[str, Any], words: list[str],
             target = Path(target) / "target.json"
         own = [_lend(target, _filled(keys, density, temperature), "run", memory)]
     return _carry_out(["fit", *own, *words], memory, folder, resume, force, progress)
+
+
+def _keep(target: Result, folder: PathLike | Folder | None, resume: bool, force: bool) -> Path:
+    """The folder of a target. A temporary one goes with its Result: beside results of the user's,
+    which name it and may be continued in another session, a copy stays, "target" in their folder."""
+    here = folder.path if isinstance(folder, Folder) and not folder.temporary else folder
+    if not target._folder.temporary or here is None or isinstance(here, Folder):
+        return target.folder
+    kept = Path(absolute(here, "folder")) / "target"
+    if kept.exists():
+        names = {path.name for place in (kept, target.folder) for path in place.glob("*.tsv")}
+        names = names - {"timing.tsv"} | {"target.json"}
+        same = set(filecmp.cmpfiles(kept, target.folder, names, shallow=False)[0]) == names
+        if same or resume or not force:  # without force the run itself refuses what is there
+            return kept if same else target.folder
+        shutil.rmtree(kept)
+    elif kept.parent.exists() and any(kept.parent.iterdir()) and not force:
+        return target.folder
+    return target.save(kept)
 
 
 def _filled(keys: Mapping[str, Any], density: float | None,

@@ -207,6 +207,26 @@ def test_interrupted_simulation_goes_on_with_the_same_bits(tmp_path, monkeypatch
     assert_same_tables(run.folder, whole.folder)
 
 
+def test_fit_of_a_temporary_target_goes_on_in_another_session(tmp_path, monkeypatch):
+    positions = np.random.default_rng(1).random((20, 100, 3)) * 2.0
+
+    def target():
+        return mesofit.measure(mesofit.Frames(positions, [2, 2, 2]), temperature=298, static=True)
+    keys = {"method": {"name": "ibi", "replicas": 2, "precision": 0.1, "iterations": 2, "samples": 8,
+                       "equilibration": 5}, "verification": {"replicas": 2, "samples": 5}}
+    warnings.simplefilter("ignore", mesofit.MesofitWarning)
+    interrupt_once(monkeypatch, lambda run: any("iteration 0" in line for line in run.outcome.lines))
+    stopped = mesofit.fit(target(), folder=tmp_path / "out", **keys)
+    assert stopped.status == "interrupted"
+    # The first target's folder is gone; what was measured again has the same bits.
+    again = mesofit.fit(target(), folder=tmp_path / "out", resume=True, **keys)
+    assert again.status != "interrupted"
+    other = mesofit.fit(tmp_path / "out" / "target", folder=tmp_path / "two", **keys)
+    assert_same_tables(again.folder, other.folder)
+    with pytest.raises(mesofit.InputError, match="force=True replaces it"):
+        mesofit.fit(target(), folder=tmp_path / "out", **keys)
+
+
 def test_interrupted_fit_is_what_there_is(run_file, monkeypatch):
     endless = {**run_file, "method": {"name": "ibi", "replicas": 2, "precision": 1e-3,
                                       "samples": 20, "equilibration": 20}}
