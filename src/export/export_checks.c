@@ -77,7 +77,7 @@ static void print_density(const struct export_job *job, double factor, FILE *str
     const double density = factor * density_of(model) / pow(units->length, dimensions);
     double mass = 0;
     fprintf(stream, "%.4g 1/%s^%d", density, units->length_name, dimensions);
-    if (!mf_units_known(&model->scene.units) || dimensions == 2)
+    if (!mf_units_known(&model->scene.units) || model->scene.units.massless || dimensions == 2)
         return;
     for (int type = 0; type < model->types; type++)
         mass += model->mass[type] * units->mass * (double)mf_export_count(model, type);

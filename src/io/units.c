@@ -252,12 +252,14 @@ void mf_units_read(struct units *units, struct json_object *scene) {
 
 // Written -----------------------------------------------------------------------------------------
 
-static void write_scale(const struct units *units, struct json_writer *writer) {
+/// @param[in] with_mass  false: who reads it again is not to take for a mass what stands for none
+static void write_scale(const struct units *units, struct json_writer *writer, bool with_mass) {
     mf_json_write_text(writer, "system", mf_units_systems[units->system]);
     mf_json_write_number(writer, "length",
                          mf_units_file_value(units->length, lengths(units->system)));
     mf_json_write_number(writer, "temperature", units->temperature);
-    mf_json_write_number(writer, "mass", mf_units_file_value(units->mass, masses));
+    if (with_mass)
+        mf_json_write_number(writer, "mass", mf_units_file_value(units->mass, masses));
 }
 
 void mf_units_write(const struct units *units, struct json_writer *writer) {
@@ -265,7 +267,7 @@ void mf_units_write(const struct units *units, struct json_writer *writer) {
         return;
     mf_json_writer_set_units(writer, units);
     mf_json_begin(writer, "units");
-    write_scale(units, writer);
+    write_scale(units, writer, !units->massless);
     mf_json_end(writer);
 }
 
@@ -279,7 +281,7 @@ void mf_units_write_summary(const struct units *units, struct json_writer *write
         return;
     mf_json_writer_set_units(writer, units);
     mf_json_begin(writer, "units");
-    write_scale(units, writer);
+    write_scale(units, writer, true);
     for (size_t k = 0; k < sizeof derived / sizeof *derived; k++)
         mf_json_write_quantity(writer, derived[k][0], derived[k][1], 1);
     if (units->dimensions == 2) // of pressure, which is then of an area

@@ -84,7 +84,8 @@ static void find_step_cause(const struct verification *verification, const struc
 void mf_fit_step_text(const struct verification *verification, const struct units *units,
                       char text[FIT_STEP_TEXT_SIZE]) {
     const struct verify_step *step = &verification->step;
-    char used[TIME_SIZE], first[TIME_SIZE], off[OFF_SIZE], why[OFF_SIZE + TIME_SIZE + 8], bound[64];
+    static const double exact = 0.0101; // the 1 % by which a step is judged
+    char used[TIME_SIZE], first[TIME_SIZE], off[OFF_SIZE], why[OFF_SIZE + TIME_SIZE + 8], bound[96];
     text[0] = '\0';
     if (step->result == VERIFY_STEP_LONG || step->result == VERIFY_STEP_NOT_THE_CAUSE) {
         find_step_cause(verification, units, text);
@@ -94,6 +95,10 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
         return;
     if (step->result == VERIFY_STEP_UNKNOWN)
         snprintf(bound, sizeof bound, "too few samples to check it");
+    else if (step->off.within > exact)
+        snprintf(bound, sizeof bound,
+                 "no error of a temperature seen, but its samples see none below %.2g %%",
+                 100 * step->off.within);
     else
         snprintf(bound, sizeof bound, "both temperatures are right within %.2g %%",
                  100 * step->off.within);

@@ -144,6 +144,12 @@ void mf_progress_end(const struct progress *progress) {
     mf_tracked_files_remove(path);
 }
 
+/// Whether it was written before, but for rate and time left: in a file it would stand there twice.
+static bool is_said(const struct progress *progress, const struct watcher_progress *reported) {
+    return !progress->terminal && progress->last > 0 && progress->written == reported->done &&
+           strncmp(progress->said, reported->text, sizeof progress->said - 1) == 0;
+}
+
 /// One line a while, the last one always.
 static void write_line(struct progress *progress, const struct watcher_progress *reported,
                        const char *left) {
@@ -151,10 +157,12 @@ static void write_line(struct progress *progress, const struct watcher_progress 
     char rate[PROGRESS_RATE_SIZE];
     const double interval = progress->terminal ? terminal_interval : pipe_interval;
     const bool ends = reported->done == reported->total && progress->written != reported->total;
-    if (progress->quiet || (now - progress->last < interval && !ends))
+    if (progress->quiet || (now - progress->last < interval && !ends) ||
+        is_said(progress, reported))
         return;
     progress->last = now;
     progress->written = reported->done;
+    snprintf(progress->said, sizeof progress->said, "%s", reported->text);
     if (progress->terminal)
         mf_terminal_clear_line();
     fprintf(stderr, "%s  %3.0f %%", reported->text,

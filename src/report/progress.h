@@ -41,12 +41,15 @@ double mf_progress_pace_rate(const struct progress_pace *pace, double clock, uin
 double mf_progress_pace_left(const struct progress_pace *pace, double clock, uint64_t done,
                              uint64_t total);
 
+enum { PROGRESS_SAID_SIZE = 192 };
+
 struct progress {
     enum run_words quiet;
     bool terminal;
     double started;                ///< clock at the begin [s]
     double last;                   ///< clock of the last line [s]
     uint64_t written;              ///< parts that were done then
+    char said[PROGRESS_SAID_SIZE]; ///< its text
     const char *folder;            ///< where progress.json is to be, or NULL; borrowed
     double next;                   ///< clock of the next one [s]
     uint64_t done_before;          ///< parts that a run before a restart had done

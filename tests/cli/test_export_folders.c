@@ -31,6 +31,36 @@ static void assert_refused(const char *folder, const char *engine, const char *o
     assert_int_not_equal(stat("empty/to", &found), 0);
 }
 
+/// The README of an export of a small scene in nm and ps.
+static void export_of(struct temporary_folder *folder, const char *mass, char **readme) {
+    static const char text[] =
+        "{\"units\": \"nm-ps\", \"box\": [3, 3, 3], \"particles\": {\"count\": 81 MASS},\n"
+        "\"temperature\": 300, \"time_step\": 0.01, \"dissipative\": {\"law\": \"power\", "
+        "\"sigma\": "
+        "3, \"cutoff\": 1},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25, \"cutoff\": 1},\n"
+        "\"measure\": {\"equilibration\": 10, \"samples\": 20, \"every\": 5}}\n";
+    static struct run_program_result result;
+    small_inputs_write(folder, "scene.json", text, "MASS", mass);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "export", "out", "--engine", "lammps", "-o", "lammps", "--force");
+    run_program_assert_code(&result, 0);
+    *readme = temporary_folder_read("lammps/README");
+}
+
+/// Without a mass a density of 1 u a bead would be a false one.
+static void test_density_in_grams_needs_a_mass(void **state) {
+    char *readme;
+    export_of(*state, ", \"mass\": 18", &readme);
+    assert_contains(readme, "at 0.003 1/A^3 (0.08967 g/cm^3)");
+    free(readme);
+    export_of(*state, "", &readme);
+    assert_contains(readme, "at 0.003 1/A^3, and so");
+    assert_null(strstr(readme, "g/cm^3"));
+    free(readme);
+}
+
 static void test_what_cannot_be_exported_is_one_line(void **state) {
     static struct run_program_result result;
     assert_int_equal(mkdir("empty", 0777), 0);
@@ -301,6 +331,7 @@ static void test_fit_in_nm_and_ps_is_exported(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        TEST(test_density_in_grams_needs_a_mass),
         TEST(test_what_cannot_be_exported_is_one_line),
         TEST(test_friction_that_an_engine_has_not_is_left_out_and_told),
         TEST(test_friction_across_pairs_goes_to_engines_that_have_it),

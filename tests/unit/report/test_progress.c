@@ -9,8 +9,10 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static void test_pace_is_unknown_before_the_first_part(void **state) {
     (void)state;
@@ -157,6 +159,26 @@ static void test_iteration_that_doubles_its_samples_has_no_time_left(void **stat
 }
 
 /// What who looks at the folder reads: numbers that agree with each other, and nothing at the end.
+/// What is begun and what has ended say the same where samples are doubled: once in a file.
+static void test_line_of_a_file_is_not_repeated(void **state) {
+    static const char text[] = "iteration 0  doubling samples, 1 of 9";
+    struct progress progress = mf_progress_begin(RUN_SAYS_ALL, NULL);
+    const int before = dup(STDERR_FILENO);
+    (void)state;
+    assert_non_null(freopen("said", "w", stderr));
+    progress.terminal = false;
+    for (int k = 0; k < 3; k++) {
+        mf_progress_report(&progress, 4, 4, "simulations", text);
+        progress.last -= 1000; // a long while
+    }
+    fflush(stderr);
+    dup2(before, STDERR_FILENO);
+    char *said = temporary_folder_read("said");
+    assert_non_null(strstr(said, text));
+    assert_null(strstr(strstr(said, text) + 1, text));
+    free(said);
+}
+
 static void test_progress_is_in_the_folder_until_the_end(void **state) {
     struct temporary_folder *folder = *state;
     struct progress progress = mf_progress_begin(true, NULL);
@@ -186,6 +208,8 @@ int main(void) {
         cmocka_unit_test(test_pace_forgets_a_slow_beginning),
         cmocka_unit_test(test_iterations_go_on_when_their_passes_begin_anew),
         cmocka_unit_test_setup_teardown(test_iteration_that_doubles_its_samples_has_no_time_left,
+                                        temporary_folder_create, temporary_folder_remove),
+        cmocka_unit_test_setup_teardown(test_line_of_a_file_is_not_repeated,
                                         temporary_folder_create, temporary_folder_remove),
         cmocka_unit_test_setup_teardown(test_progress_is_in_the_folder_until_the_end,
                                         temporary_folder_create, temporary_folder_remove),
