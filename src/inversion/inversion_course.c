@@ -201,10 +201,10 @@ static enum status accept_trial(struct inversion *inversion, bool *kept) {
 enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->course.progress;
     const struct inversion_assessment *assessment = &inversion->assessment;
-    const double error = assessment->distance[TARGET_RDF].rms;
     const bool start = isinf(progress->best.distance[TARGET_RDF].rms);
     if (progress->trial)
         return accept_trial(inversion, kept);
+    const double error = assessment->distance[TARGET_RDF].rms;
     *kept = !assessment->useless && mf_inversion_keeps(inversion);
     progress->from_disorder = !*kept;
     progress->gave_up = assessment->unequilibrated.found && assessment->unequilibrated.for_long;

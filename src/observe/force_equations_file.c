@@ -42,7 +42,7 @@ static enum status describe(const struct force_equations *equations, struct byte
     return STATUS_OK;
 }
 
-enum { BLOCK_NAME = 24 };
+enum { BLOCK_NAME = 32 };
 
 /// Columns of a table.
 struct columns {
