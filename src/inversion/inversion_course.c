@@ -188,6 +188,7 @@ static enum status accept_trial(struct inversion *inversion, bool *kept) {
                           mf_inversion_assessment_noises(assessment, targets, progress->min));
     progress->trial = false;
     progress->from_disorder = !*kept;
+    progress->gave_up = assessment->unequilibrated.found && assessment->unequilibrated.for_long;
     progress->lost = first && !*kept;
     progress->from_forces = progress->from_forces && !*kept;
     if (!*kept)
