@@ -7,16 +7,16 @@
 /// Helfand, Phys. Rev. 119, 1 (1960), exact for any length of the intervals, also with noise whose
 /// autocorrelation is a delta function.
 ///
-/// I(k) comes to rest, and its noise grows with k. Of the windows T, T/2, T/4, … from the second half
-/// of each of which I has a mean, the error of one has three parts: its own noise; that of what the
-/// next doubling adds, in which as much may hide; and the largest difference from a longer window,
-/// by which it may be too short. Error is so weighed against bias as A. Goldenshluger and O. Lepski
-/// do, Ann. Stat. 39, 1608 (2011), in place of the threshold by eye of Y. Zhang, A. Otani and E. J.
-/// Maginn, J. Chem. Theory Comput. 11, 3537 (2015). Taken is the longest window whose error is at
-/// most a quarter above the least. Of white noise, decays with one time and those with two or three,
-/// whose last one has a third of the integral, the values lie 0.8 to 1.2 of their errors from the
-/// truth (rms), and at most a tenth of them are of the whole of T, if that is five times as long as
-/// the flow remembers. Errors are of blocks of time.
+/// I(k) comes to rest, and its noise grows with k. Of the windows T, T/2, T/4, … from the second
+/// half of each of which I has a mean, the error of one has three parts: its own noise; that of
+/// what the next doubling adds, in which as much may hide; and the largest difference from a longer
+/// window, by which it may be too short. Error is so weighed against bias as A. Goldenshluger and
+/// O. Lepski do, Ann. Stat. 39, 1608 (2011), in place of the threshold by eye of Y. Zhang, A. Otani
+/// and E. J. Maginn, J. Chem. Theory Comput. 11, 3537 (2015). Taken is the longest window whose
+/// error is at most a quarter above the least. Of white noise, decays with one time and those with
+/// two or three, whose last one has a third of the integral, the values lie 0.8 to 1.2 of their
+/// errors from the truth (rms), and at most a tenth of them are of the whole of T, if that is five
+/// times as long as the flow remembers. Errors are of blocks of time.
 #pragma once
 
 #include "base/memory.h"

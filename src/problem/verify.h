@@ -27,7 +27,7 @@ struct verification {
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
     struct verify_sections sections;
     struct verify_agreement agreement[TARGETS]; ///< with what was to be met; the caller's
-    double share; ///< of mf_verify_agree; the caller's
+    double share;                               ///< of mf_verify_agree; the caller's
     struct thermodynamics_summary thermodynamics;
     struct thermodynamics_shift shift;
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
