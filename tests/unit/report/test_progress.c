@@ -164,8 +164,8 @@ static void test_line_of_a_file_is_not_repeated(void **state) {
     static const char text[] = "iteration 0  doubling samples, 1 of 9";
     struct progress progress = mf_progress_begin(RUN_SAYS_ALL, NULL);
     const int before = dup(STDERR_FILENO);
-    (void)state;
-    assert_non_null(freopen("said", "w", stderr));
+    const char *file = temporary_folder_file(*state, "said");
+    assert_non_null(freopen(file, "w", stderr));
     progress.terminal = false;
     for (int k = 0; k < 3; k++) {
         mf_progress_report(&progress, 4, 4, "simulations", text);
@@ -173,7 +173,8 @@ static void test_line_of_a_file_is_not_repeated(void **state) {
     }
     fflush(stderr);
     dup2(before, STDERR_FILENO);
-    char *said = temporary_folder_read("said");
+    close(before);
+    char *said = temporary_folder_read(file);
     assert_non_null(strstr(said, text));
     assert_null(strstr(strstr(said, text) + 1, text));
     free(said);
