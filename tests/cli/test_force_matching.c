@@ -196,7 +196,8 @@ static void change_forces(double factor) {
     text[fread(text, 1, sizeof text - 1, file)] = '\0';
     fclose(file);
     file = fopen("target/forces.tsv", "w");
-    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+    for (char *rest, *line = strtok_r(text, "\n", &rest); line;
+         line = strtok_r(NULL, "\n", &rest)) {
         int column = 0;
         for (char *at = line, *end; line[0] != '#'; at = end, column++) {
             const double number = strtod(at, &end);

@@ -114,8 +114,8 @@ static void test_band_of_a_short_range_knows_that_its_pressure_is_that_of_more(v
 /// A law that ends where the potential does is known by its counts: of what it has in its last
 /// fifth an error of 0.9 would come.
 static void test_band_of_a_range_that_fits_the_law_is_that_of_its_counts(void **state) {
-    const struct worth worth = judge(
-        state, &(struct cut){"hertzian", hertz, 1, "\"density\": 2, \"temperature\": 1", ""});
+    const struct worth worth =
+        judge(state, &(struct cut){"hertzian", hertz, 1, "\"density\": 2, \"temperature\": 1", ""});
     assert_true(worth.off < 2);
     assert_true(worth.error < 0.05);
 }
