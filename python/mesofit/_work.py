@@ -276,7 +276,8 @@ def fit_with(target: Any, keys: dict[str, Any], words: list[str],
     if isinstance(keys.get("method"), str):
         keys["method"] = {"name": keys["method"]}
     if isinstance(target, Result):
-        target = _keep(target, folder, resume, force)
+        return _fit_result(target, keys, words, folder, resume, force, progress, density=density,
+                           temperature=temperature)
     if not isinstance(target, (Mapping, str, os.PathLike)):
         raise InputError(f"target: expected a result of measure, a dict or a path, found "
                          f"{type(target).__name__}")
@@ -289,23 +290,40 @@ def fit_with(target: Any, keys: dict[str, Any], words: list[str],
     return _carry_out(["fit", *own, *words], memory, folder, resume, force, progress)
 
 
-def _keep(target: Result, folder: PathLike | Folder | None, resume: bool, force: bool) -> Path:
-    """The folder of a target. A temporary one goes with its Result: beside results of the user's,
+def _fit_result(target: Result, keys: dict[str, Any], words: list[str],
+                folder: PathLike | Folder | None, resume: bool, force: bool,
+                progress: bool | None, **scene: float | None) -> Result:
+    """`fit_with` of a Result; a copy of a temporary one is gone again if the fit is refused."""
+    kept, new = _keep(target, folder, resume, force)
+    try:
+        return fit_with(kept, keys, words, folder, resume, force, progress, **scene)
+    except InputError as fault:
+        if not new:
+            raise
+        shutil.rmtree(kept)
+        if not any(kept.parent.iterdir()):
+            kept.parent.rmdir()
+        fault.args = (str(fault).replace(str(kept), str(target.folder)), *fault.args[1:])
+        raise
+
+
+def _keep(target: Result, folder: PathLike | Folder | None, resume: bool, force: bool) -> tuple[Path, bool]:
+    """The folder of a target, and whether it is a new copy. A temporary one goes with its Result: beside results of the user's,
     which name it and may be continued in another session, a copy stays, "target" in their folder."""
     here = folder.path if isinstance(folder, Folder) and not folder.temporary else folder
     if not target._folder.temporary or here is None or isinstance(here, Folder):
-        return target.folder
+        return target.folder, False
     kept = Path(absolute(here, "folder")) / "target"
     if kept.exists():
         names = {path.name for place in (kept, target.folder) for path in place.glob("*.tsv")}
         names = names - {"timing.tsv"} | {"target.json"}
         same = set(filecmp.cmpfiles(kept, target.folder, names, shallow=False)[0]) == names
         if same or resume or not force:  # without force the run itself refuses what is there
-            return kept if same else target.folder
+            return (kept if same else target.folder), False
         shutil.rmtree(kept)
     elif kept.parent.exists() and any(kept.parent.iterdir()) and not force:
-        return target.folder
-    return target.save(kept)
+        return target.folder, False
+    return target.save(kept), True
 
 
 def _filled(keys: Mapping[str, Any], density: float | None,
