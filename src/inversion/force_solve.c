@@ -233,6 +233,7 @@ static void find_coarse(const struct force_work *w, size_t n, size_t k, size_t c
 
 /// The posterior with every other node: (Pᵀ M P) y = Pᵀ h, with x = P y and y among the unknowns.
 static enum status solve_coarse(struct force_work *w, double *coarse) {
+    static const double ridge = 1e-12;
     enum status status = STATUS_OK;
     const size_t n = w->count;
     gsl_matrix *p = gsl_matrix_calloc(n, n), *half = gsl_matrix_alloc(n, n);
@@ -251,9 +252,9 @@ static enum status solve_coarse(struct force_work *w, double *coarse) {
     gsl_blas_dsymm(CblasLeft, CblasLower, 1, w->matrix, p, 0, half);
     gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1, p, half, 0, w->matrix);
     gsl_blas_dgemv(CblasTrans, 1, p, w->weighed, 0, w->found);
-    for (size_t k = 0; k < n; k++)
-        if (gsl_matrix_get(w->matrix, k, k) == 0) // a node that is left out
-            gsl_matrix_set(w->matrix, k, k, 1);
+    const double rounding = ridge * gsl_matrix_max(w->gram);
+    for (size_t k = 0; k < n; k++) // 1 of a node that is left out
+        *gsl_matrix_ptr(w->matrix, k, k) += gsl_matrix_get(w->matrix, k, k) == 0 ? 1 : rounding;
     CHECK(gsl_linalg_cholesky_decomp1(w->matrix) == 0
               ? STATUS_OK
               : mf_status_fail(STATUS_BAD_INPUT, "the equations of the forces are singular"));
