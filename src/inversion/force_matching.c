@@ -181,6 +181,25 @@ static void destroy(void *memory) {
     mf_memory_free(state->error);
 }
 
+/// Beyond their range the forces tell nothing: no potential would be as good as one of 0.
+static enum status refuse_beyond(const struct inverse_problem *problem,
+                                 const struct potential_grid *grid) {
+    for (size_t pair = 0; pair < grid->pairs; pair++) {
+        const double range = grid->r[grid->pair_points - 1];
+        const struct force_curve *curve;
+        TRY(find_pair(problem, pair, &curve));
+        const double last = curve->low + curve->width * (double)(curve->nodes - 1);
+        if (last < range - 1.01 * curve->width)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "target.forces: they end at r = %.4g" STATUS_LENGTH
+                                  ", the potential at %.4g" STATUS_LENGTH
+                                  ": measure them as far (--forces), or end the g(r) there by "
+                                  "\"cutoff\"",
+                                  last, range);
+    }
+    return STATUS_OK;
+}
+
 static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     struct force_matching *const state = memory;
@@ -192,6 +211,7 @@ static enum status create(void *memory, const struct inverse_method *method,
                               method->name);
     state->problem = problem;
     TRY(mf_potential_grid_init(&state->grid, problem));
+    TRY(refuse_beyond(problem, &state->grid));
     TRY_ARRAY(state->phi, state->grid.points);
     TRY_ARRAY(state->error, state->grid.points);
     return STATUS_OK;
@@ -217,9 +237,9 @@ static enum status iterate(void *memory, struct inverse_step *step,
         step->curve_error[UNKNOWN_BONDED] = state->error + state->grid.pair_points;
     }
     snprintf(step->reason, sizeof step->reason,
-             "%.1f %% of the mean square of the forces is that of these potentials; g(r) was not "
+             "%.*f %% of the mean square of the forces is that of these potentials; g(r) was not "
              "fitted",
-             100 * found.explained);
+             found.explained > 0.999 ? 4 : 1, 100 * found.explained);
     return STATUS_OK;
 }
 

@@ -139,7 +139,7 @@ static void test_chains_come_back_with_all_their_terms(void **state) {
     RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "finished after 1 iterations");
-    assert_contains(result.err, "100.0 % of the mean square of the forces is that of these "
+    assert_contains(result.err, "100.0000 % of the mean square of the forces is that of these "
                                 "potentials; g(r) was not fitted");
     assert_contains(result.err, "verified: rms of rdf - target");
     for (int n = 0; n < 6; n++) {
@@ -151,6 +151,17 @@ static void test_chains_come_back_with_all_their_terms(void **state) {
         squares += z * z / 6;
     }
     assert_true(sqrt(squares) < 1.3);
+}
+
+/// Beyond its forces a potential would be 0, and known to be.
+static void test_forces_that_end_before_the_potential_are_refused(void **state) {
+    (void)state;
+    MEASURE(DUMP, "--molecules", "scene.json", "--forces", "0.8");
+    run_program_assert_code(&result, 0);
+    write_run(NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "target.forces: they end at r = 0.8 nm, the potential at 1.2 nm");
 }
 
 static void assert_measure_refused(const char *part) {
@@ -365,6 +376,7 @@ static void test_a_fit_without_the_forces_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_chains_come_back_with_all_their_terms),
+        cmocka_unit_test(test_forces_that_end_before_the_potential_are_refused),
         cmocka_unit_test(test_inversions_begin_with_forces),
         cmocka_unit_test(test_auto_goes_on_from_the_nearer_start),
         cmocka_unit_test(test_a_pressure_is_met),

@@ -226,7 +226,7 @@ static void test_known_laws_come_back_from_each_format(void **state) {
         write_run();
         RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
         run_program_assert_code(&result, 0);
-        assert_contains(result.err, "100.0 % of the mean square of the forces");
+        assert_contains(result.err, "100.0000 % of the mean square of the forces");
         for (int pair = 0; pair < 3; pair++) {
             const double off = find_deviation(pair, names[pair]);
             print_message("%s: %s off by %.2g kJ/mol\n", files[k], names[pair], off);
