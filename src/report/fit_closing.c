@@ -210,16 +210,23 @@ static void print_bulk(struct progress *to, const struct fit_file *fit,
         targets_ask(&fit->problem.compared, kind))
         return;
     print_open(factor * value, factor * hypot(open, error), range);
+    char length[UNITS_NAME_SIZE], law[256];
+    const double end =
+        mf_units_factor(units, "lambda") * mf_rdf_bins_range(&fit->problem.targets.bins);
+    mf_units_suffix(units, "lambda", length);
+    if (result->ramp.bulk_range > sqrt(0.5) * open)
+        snprintf(
+            law, sizeof law,
+            ", most of it by what the law may do beyond %.4g%s, which a longer \"cutoff\" of the "
+            "target tells",
+            end, length);
+    else
+        snprintf(law, sizeof law, ", if the law ends at %.4g%s", end, length);
     mf_progress_print(
         to,
         "undetermined: g(r) alone does not determine the %s: %s%s%s; give \"%s\" as a "
         "second target to fix it",
-        name, range, mf_units_suffix(units, of, unit),
-        result->ramp.bulk_range > sqrt(0.5) * open
-            ? ", most of it by what the law may do beyond the range, which a longer "
-              "\"cutoff\" of the target tells"
-            : "",
-        name);
+        name, range, mf_units_suffix(units, of, unit), law, name);
 }
 
 /// What relaxes so slowly that the samples hold few independent values of it.
