@@ -73,6 +73,10 @@ void mf_history_clear(struct history *history) {
     *history = (struct history){0};
 }
 
+double mf_history_seconds(const struct history *history) {
+    return history->iterations > 0 ? history->times[history->iterations - 1].seconds : 0;
+}
+
 enum status mf_history_add(struct history *history, const struct inverse_step *step,
                            struct history_time time) {
     if (history->iterations == history->capacity)

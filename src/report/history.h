@@ -34,6 +34,10 @@ double mf_history_first_error(const struct history *history);
 
 void mf_history_clear(struct history *history);
 
+/// On the wall, up to the end of the last iteration: without a verification, through which
+/// checkpoints go on.
+double mf_history_seconds(const struct history *history);
+
 /// Append an iteration. Fails: NO_MEMORY.
 enum status mf_history_add(struct history *history, const struct inverse_step *step,
                            struct history_time time) MUST_USE;

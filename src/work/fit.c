@@ -203,14 +203,11 @@ static void report_verification(void *context, const struct inverse_progress *p)
 /// What the tables and the summary say at this point.
 static struct fit_result result_so_far(const struct run *run, enum status status) {
     const struct standing *s = &run->standing;
-    // Checkpoints go on through the verification, and so does the time that they know.
-    const size_t n = run->history.iterations;
-    const double seconds = n > 0 ? run->history.times[n - 1].seconds : s->time.seconds;
     struct fit_result result = {.status = status,
                                 .iterations = s->iterations,
                                 .evaluations = s->evaluations,
                                 .engine_steps = s->engine_steps,
-                                .seconds = seconds,
+                                .seconds = mf_history_seconds(&run->history),
                                 .without_ramp = run->without_ramp,
                                 .ramp = s->ramp,
                                 .slowest = s->slowest,
