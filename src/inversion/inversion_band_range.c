@@ -74,20 +74,17 @@ static bool solve_with_outer(const struct inversion *inversion, const bool *oute
     const size_t n = x->size, *point = inversion_grid(inversion)->known_point;
     const double *phi = inversion->course.phi;
     for (size_t a = 0; a < n; a++)
-        for (size_t b = 0; b < a; b++) {
-            const double both = gsl_matrix_get(normal, a, b);
-            if (outer[b] && !outer[a])
-                *gsl_vector_ptr(x, a) -= both * (left[b] - phi[point[b]]);
-            if (outer[a] && !outer[b])
-                *gsl_vector_ptr(x, b) -= both * (left[a] - phi[point[a]]);
-            if (outer[a] || outer[b])
-                gsl_matrix_set(normal, a, b, 0);
-        }
-    for (size_t a = 0; a < n; a++)
-        if (outer[a]) {
-            gsl_matrix_set(normal, a, a, 1);
+        for (size_t b = 0; b < n; b++)
+            if (!outer[a] && outer[b])
+                *gsl_vector_ptr(x, a) -= gsl_matrix_get(normal, a > b ? a : b, a > b ? b : a) *
+                                         (left[b] - phi[point[b]]);
+    for (size_t a = 0; a < n; a++) {
+        if (outer[a])
             gsl_vector_set(x, a, left[a] - phi[point[a]]);
-        }
+        for (size_t b = 0; b <= a; b++)
+            if (outer[a] || outer[b])
+                gsl_matrix_set(normal, a, b, a == b);
+    }
     if (gsl_linalg_cholesky_decomp1(normal) != GSL_SUCCESS)
         return false;
     gsl_linalg_cholesky_svx(normal, x);
