@@ -43,7 +43,7 @@ class Steering(PageTest):
             "canvas.closest('figure').querySelector('p').textContent] : null", name)
 
     def test_candidate_is_shown_with_what_it_gives(self):
-        """The last one of the first generation is what its curves say of it."""
+        """A candidate is what its curves say of it. There are generations enough for a slow browser to pause."""
         self.write("fluid.json", {**FLUID, "seed": 5, "conservative": {"law": "soft-repulsion", "a": 25}, "rdf": {"range": 1, "bins": 20}})
         self.assertEqual(run_plain(self.folder, "simulate", "fluid.json", "-o", "fluid"), 0)
         for method in ("genetic", "cma-es"):
@@ -56,7 +56,7 @@ class Steering(PageTest):
         self.write("bred.json", {
             "seed": 3, "scene": FLUID, "target": {"rdf": {"file": "fluid/rdf.tsv"}},
             "unknowns": {"potential": {"coefficients": 4, "maximum": 30}},
-            "method": {"name": method, "population": 8, "generations" if method == "genetic" else "rounds": 2, "equilibration": 100, "samples": 200, "every": 30,
+            "method": {"name": method, "population": 8, "generations" if method == "genetic" else "rounds": 6, "equilibration": 100, "samples": 200, "every": 30,
                        "temperature_tolerance": 0.5},
             "verification": {"replicas": 2, "equilibration": 20, "samples": 5, "every": 8}})
         self.begin("live", "bred.json", "-o", method, "--force", "--stay")
