@@ -366,6 +366,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
     CHECK(find_matrices(inversion, &system, birge));
     CHECK(find_most_probable(inversion, &system, birge, most_probable));
     weigh_ramp(inversion, weight);
+    CHECK(mf_inversion_band_add_samples(inversion, birge, weight));
     find_step(inversion, most_probable, step);
     find_drifts(inversion, step, weight, scratch);
     add_drift(inversion, weight, scratch);

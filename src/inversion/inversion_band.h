@@ -45,6 +45,7 @@
 #include "problem/inverse.h"
 
 struct inversion;
+struct inversion_state;
 struct inversion_assessment;
 
 /// The change of a number that the target hardly determines and still requires, and the standard
@@ -121,6 +122,22 @@ void mf_inversion_band_add_square(struct inversion *inversion, double factor, co
 /// Fails: NO_MEMORY.
 enum status mf_inversion_band_add_prior(const struct inversion *inversion, struct imc_system system,
                                         gsl_matrix *normal, gsl_vector *asked) MUST_USE;
+
+/// Add to Σ what the samples scatter by along A and the pressures, where it is more than their bins
+/// say: one inefficiency for all bins is that of many quick ones, and what g hardly sees is slow.
+/// Each replica asks for a step of its own, H⁻¹ Bᵀ L⁻¹ S; their scatter is measured. Of
+/// Lennard-Jones with a hill between two wells it is five times what the bins say.
+/// @param[in] weight  of A, shape [known]
+/// Fails: NO_MEMORY. Tested: test_inversion_band_samples.
+enum status mf_inversion_band_add_samples(struct inversion *inversion, double birge,
+                                          const double *weight) MUST_USE;
+
+/// Whether the samples make more of the error of A, or of a pressure, than all else does, by half.
+bool mf_inversion_band_is_noisy(const struct inversion_state *state);
+
+/// The error that the samples of a state make of that number, over that of all else, as the last
+/// iteration knew it. Tested: test_inversion_band_samples.
+struct inverse_doubling mf_inversion_band_noise(const struct inversion_state *state);
 
 /// What the error of the range is found from.
 struct inversion_band_without {

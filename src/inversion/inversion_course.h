@@ -29,6 +29,9 @@ struct inversion_drifts {
     double ramp[INVERSION_MAX_DRIFTS], bulk[INVERSION_MAX_DRIFTS][INVERSE_MAX_STATES];
 };
 
+/// Longer samples for what g hardly sees, once.
+enum { INVERSION_NOT_REFINED, INVERSION_REFINES, INVERSION_REFINED };
+
 /// What a checkpoint keeps besides arrays and samplers.
 struct inversion_progress {
     uint32_t iteration;
@@ -44,11 +47,12 @@ struct inversion_progress {
     double newton_failed_error; ///< of g, from where a step with another in reserve led away, or
                                 ///< the first
     struct inversion_drifts drifts;
-    bool on_its_way;    ///< the last two keep one direction: what earlier iterations ask for, moved
-                        ///< by a response that changes on the way, would hold the fit back
-    bool second_start;  ///< it began again, from −k_B T ln g
-    bool lost;          ///< none of the starts settled
-    bool gave_up;       ///< the last samples had not settled when they had cost enough
+    bool on_its_way;   ///< the last two keep one direction: what earlier iterations ask for, moved
+                       ///< by a response that changes on the way, would hold the fit back
+    int refining;      ///< INVERSION_REFINES: it would have ended, but for the noise of its samples
+    bool second_start; ///< it began again, from −k_B T ln g
+    bool lost;         ///< none of the starts settled
+    bool gave_up;      ///< the last samples had not settled when they had cost enough
     bool weighs_starts; ///< the start that the target alone says is tried beside that of forces
     bool trial;         ///< the present potential is that
     bool from_forces;   ///< the start of the best was that of forces

@@ -312,3 +312,23 @@ enum status mf_inversion_equations_fill(struct inversion_equations *equations, d
     equations->of_response.noise = equations->noise_of_response;
     return STATUS_OK;
 }
+
+void mf_inversion_equations_weigh(struct inversion_equations *equations, size_t s, const double *x,
+                                  double *q) {
+    const struct inversion_state *state = &equations->state[s];
+    const size_t known = state->grid.known;
+    const struct imc_system own = mf_inversion_equations_of(state);
+    const gsl_matrix_const_view response =
+        gsl_matrix_const_view_array(own.covariance, known, known);
+    const gsl_vector_const_view from = gsl_vector_const_view_array(x, known);
+    const gsl_matrix_const_view l = gsl_matrix_const_view_array(equations->noise, known, known);
+    gsl_vector_view to = gsl_vector_view_array(q, known);
+    mf_inversion_noise_find(state, equations->kind[s], NULL, equations->noise);
+    gsl_blas_dgemv(CblasNoTrans, 1 / own.temperature, &response.matrix, &from.vector, 0,
+                   &to.vector);
+    gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &l.matrix, &to.vector);
+    for (size_t a = 0; a < known; a++)
+        if (!state->grid.seen[a])
+            q[a] = 0;
+    gsl_blas_dtrsv(CblasLower, CblasTrans, CblasNonUnit, &l.matrix, &to.vector);
+}

@@ -61,5 +61,12 @@ enum status mf_inversion_equations_without(const struct inversion_equations *equ
                                            double birge, const bool *without, gsl_matrix *normal,
                                            gsl_vector *asked) MUST_USE;
 
+/// q = W⁻¹ C x/k_B T of a state, 0 in bins that it has not seen: x·Bᵀ L⁻¹ excess is Σ q·excess over
+/// the states.
+/// @param[out] q  shape [known]
+/// Tested: test_inversion_band_samples.
+void mf_inversion_equations_weigh(struct inversion_equations *equations, size_t s, const double *x,
+                                  double *q);
+
 /// The equations of one state as they stand, without the pressure.
 struct imc_system mf_inversion_equations_of(const struct inversion_state *state);

@@ -84,15 +84,6 @@ static struct inverse_doubling find_noisiest(const struct inversion_state *state
     return noisiest;
 }
 
-/// Whether more samples help. Replicas that are stuck would never be distinguished from noise.
-static bool needs_samples(const struct inversion_state *state, struct inverse_doubling *doubling) {
-    const int before = doubling->number;
-    *doubling = find_noisiest(state, before);
-    doubling->number = before + 1;
-    doubling->max = MAX_DOUBLINGS;
-    return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;
-}
-
 /// The samples of an iteration as they are taken.
 struct sampling {
     const struct inversion *inversion;
@@ -201,6 +192,25 @@ static bool does_for_step(const struct sampling *sampling) {
            !sampling->inversion->course.progress.gave_up;
 }
 
+/// Whether samples may be longer for A alone: until they cost as much as all before them.
+static bool may_refine(const struct sampling *sampling) {
+    const struct inversion_state *state = sampling->state;
+    return sampling->inversion->course.progress.refining == INVERSION_REFINES &&
+           sampling->sweeps < state->work.sweeps / (uint64_t)state->parameters->replicas;
+}
+
+/// Whether more samples help. Replicas that are stuck would never be distinguished from noise.
+static bool needs_samples(struct sampling *sampling) {
+    struct inverse_doubling *doubling = &sampling->progress.doubling;
+    const int before = doubling->number;
+    *doubling = find_noisiest(sampling->state, before);
+    if (may_refine(sampling))
+        *doubling = noisier(*doubling, mf_inversion_band_noise(sampling->state));
+    doubling->number = before + 1;
+    doubling->max = MAX_DOUBLINGS;
+    return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;
+}
+
 /// Take samples by the plan, all of them or as many again.
 static enum status take(struct sampling *sampling, bool again) {
     struct inversion_state *state = sampling->state;
@@ -262,7 +272,7 @@ static enum status sample_all(struct sampling *sampling) {
         if (waits(sampling)) {
             TRY(settle(sampling));
             sampling->waited += sampling->sweeps - before;
-        } else if (needs_samples(state, &sampling->progress.doubling)) {
+        } else if (needs_samples(sampling)) {
             TRY(take(sampling, true));
         } else {
             return STATUS_OK;

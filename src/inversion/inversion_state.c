@@ -91,6 +91,7 @@ static enum status allocate(struct inversion_state *state) {
     NEW_ARRAY(state->pool.variance, known);
     NEW_ARRAY(state->pool.phi, state->grid.points);
     NEW_ARRAY(state->bulk.slope, known);
+    NEW_ARRAY(state->open.weight, known);
     NEW_ARRAY(state->inside.g, state->grid.pairs * state->grid.bins);
     CHECK(mf_inversion_response_init(state));
     CHECK(mf_inversion_kirkwood_buff_init(state));
@@ -188,11 +189,11 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     mf_inversion_response_clear(&state->response);
     mf_memory_free(state->target.shape);
     mf_memory_free(state->groups);
-    double *arrays[] = {state->target.ideal, state->target.unit,   state->target.counts,
-                        state->target.error, state->target.min,    state->target.common,
-                        state->excess,       state->variance,      state->bin_inefficiency,
-                        state->pool.excess,  state->pool.variance, state->pool.phi,
-                        state->bulk.slope,   state->inside.g,      state->target.steepness};
+    double *arrays[] = {
+        state->target.ideal,     state->target.unit,   state->target.counts,    state->target.error,
+        state->target.min,       state->target.common, state->excess,           state->variance,
+        state->bin_inefficiency, state->pool.excess,   state->pool.variance,    state->pool.phi,
+        state->bulk.slope,       state->inside.g,      state->target.steepness, state->open.weight};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }
@@ -208,6 +209,8 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
     span[n++] = (struct memory_span){pool->excess, bytes};
     span[n++] = (struct memory_span){pool->variance, bytes};
     span[n++] = (struct memory_span){pool->phi, state->grid.points * sizeof(double)};
+    span[n++] = (struct memory_span){state->open.weight, bytes};
+    span[n++] = (struct memory_span){&state->open.rest, sizeof state->open.rest};
     span[n++] = (struct memory_span){&response->independent, sizeof response->independent};
     span[n++] = (struct memory_span){response->mean, bytes};
     span[n++] = (struct memory_span){response->phi, bytes};

@@ -85,13 +85,20 @@ struct inversion_state {
         double *g;  ///< of the pairs that molecules exclude, shape [pairs, bins of a pair]
         double min; ///< mf_hnc_closure_min_intramolecular; 0: not known
     } inside;       ///< molecules by themselves, inversion/inversion_intramolecular.h
+    struct {
+        double *weight; ///< of S in it, shape [known]
+        double samples; ///< its standard error by the samples of all states
+        double rest;    ///< and without; 0: not known
+    } open; ///< A of the step, or the pressure that it asks for, of which the samples tell least;
+            ///< as the last iteration knew it, mf_inversion_band_add_samples
     struct inversion_basis basis;    ///< of methods that go by the gradient; else its count is 0
     struct inversion_basis low_rank; ///< of steps far from the targets, of fits with groups
     double gradient;                 ///< of coefficients in its noise, when it was measured last
     struct inversion_work {
         uint64_t evaluations, sweeps; ///< so far
         bool mixed;    ///< since they were placed the replicas have agreed but for their noise
-        double memory; ///< sweeps from one independent sample to the next, as the last ones had
+        double memory; ///< sweeps from one independent sample to the next, as the last ones had,
+                       ///< of what is slowest
     } work;
 };
 

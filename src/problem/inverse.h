@@ -213,14 +213,15 @@ enum { INVERSE_EXTRA = 14, INVERSE_REASON_SIZE = 640 };
 
 /// What g(r) leaves open of a potential: the ramp A (1 − r/r_c).
 struct inverse_ramp {
-    double error;      ///< standard error of A [k_B T_0]; 0: not known
-    double drift;      ///< of A that the target still asks for [k_B T_0]; part of the error
-    double bulk_drift; ///< the same of what it moves, inverse_problem_bulk
-    double bulk;       ///< its derivative by A
-    double bulk_open;  ///< its standard error by g(r) alone,
-    double bulk_range; ///< of which this is that of the range of the potential
-    double directions; ///< of the potential that the data determine,
-    double bins;       ///< out of so many
+    double error;        ///< standard error of A [k_B T_0]; 0: not known
+    double drift;        ///< of A that the target still asks for [k_B T_0]; part of the error
+    double bulk_drift;   ///< the same of what it moves, inverse_problem_bulk
+    double bulk;         ///< its derivative by A
+    double bulk_open;    ///< its standard error by g(r) alone,
+    double bulk_range;   ///< of which this is that of the range of the potential,
+    double bulk_samples; ///< and this that of the samples of the fit
+    double directions;   ///< of the potential that the data determine,
+    double bins;         ///< out of so many
 };
 
 /// What the samples of an inversion forget most slowly.

@@ -220,6 +220,10 @@ static void print_bulk(struct progress *to, const struct fit_file *fit,
             ", most of it by what the law may do beyond %.4g%s, which a longer \"cutoff\" of the "
             "target tells",
             end, length);
+    else if (result->ramp.bulk_samples > sqrt(0.5) * open)
+        snprintf(law, sizeof law,
+                 ", most of it by the noise of the fit's own samples, of which a smaller "
+                 "\"precision\" takes more");
     else
         snprintf(law, sizeof law, ", if the law ends at %.4g%s", end, length);
     mf_progress_print(
