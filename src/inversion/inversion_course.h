@@ -146,7 +146,8 @@ bool mf_inversion_may_end(const struct inversion *inversion);
 /// each other: by the noise of C chi^2 of hexane swings about its bound. The way has an end, as the
 /// prior is that of Φ (inversion_band.h), and a fit whose iterations do not reach it has not
 /// converged. Iterations that are not kept do not count, and the last one must have settled.
-/// Tested: test_inversion_converged.
+/// Where its samples leave more open of A or of a pressure than all else does, by half, those of
+/// the next one are longer, once. Tested: test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Find a stretch of a g(r) that is off by more than noise, though all of it may agree: few bins
