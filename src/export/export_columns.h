@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file Columns of a result's table by their names, in reduced units whatever its heading says.
+/// @file Columns of a result's table by their names, in reduced units whatever its heading says;
+/// and the friction that stands in such tables, and what of it another engine could have.
 #pragma once
 
 #include "base/status.h"
+#include "export/export_model.h"
 #include "io/units.h"
 
 #include <stdbool.h>
@@ -28,3 +30,13 @@ enum status mf_export_columns_read(struct export_columns *columns, const char *f
                                    const struct units *units,
                                    const struct export_column *wanted) MUST_USE;
 void mf_export_columns_clear(struct export_columns *columns);
+
+/// Read what was fitted of the friction, and part it: model->own_omega and own_memory are all of
+/// it; the setup keeps what is without memory, along pairs and across them. If any has memory the
+/// setup has none, as what would be left of it is another friction. Fails: IO; BAD_INPUT;
+/// NO_MEMORY.
+/// @param[in] unknown  a sum of scene_unknown: what the scene left to the fit
+/// Tested: cli/test_export_fits, cli/test_export_folders.
+enum status mf_export_friction_find(struct export_model *model, int unknown) MUST_USE;
+
+void mf_export_friction_clear(struct export_model *model);

@@ -4,7 +4,6 @@
 // of its DPD friction is 1 − (r/r_c)^k, along pairs and across them with one k.
 #include "curves/bonded_table.h"
 #include "export/export_script.h"
-#include "export/export_terms.h"
 
 /// Ryckaert and Bellemans' are sums of waves, as tables of dihedrals are.
 static bool has_law(const struct bonded_curve *curve) {

@@ -3,7 +3,6 @@
 // HOOMD-blue: its table has no row at the cutoff and no force below the first row. Two DPD objects
 // would share their noise, and γ = 0 is an error: one object, and a cutoff of 0 without friction.
 #include "export/export_script.h"
-#include "export/export_terms.h"
 
 static bool has_law(const struct bonded_curve *curve) {
     return curve->law == &mf_bond_harmonic || curve->law == &mf_bond_fene ||

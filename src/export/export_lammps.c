@@ -2,7 +2,6 @@
 //
 // LAMMPS: pair_style table linear reads the rows as they are if its N is that of the file and the
 // rows are RSQ. Friction by dpd/tstat and dpd/ext/tstat, or by mesofit/table (share/lammps).
-#include "export/export_lammps_density.h"
 #include "export/export_lammps_molecules.h"
 #include "export/export_checks.h"
 #include "report/program.h"

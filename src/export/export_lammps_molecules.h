@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The molecules of a result in the files for LAMMPS.
+/// @file Molecules and energies of local densities of a result in the files for LAMMPS; these are a
+/// pair_style eam/fs each, over those of the pairs.
 #pragma once
 
 #include "export/export_engine.h"
@@ -36,3 +37,14 @@ void mf_export_lammps_print_system(const struct export_job *job, FILE *stream);
 
 /// How far apart beads of one term may be [λ]; 0 without molecules.
 double mf_export_lammps_reach(const struct export_model *model);
+
+/// Whether there are energies of local densities, so that styles overlay each other.
+bool mf_export_lammps_overlays(const struct export_job *job);
+
+/// "NAME.eam.fs" of each, in LAMMPS's format. Fails: IO.
+enum status mf_export_lammps_write_densities(const struct export_job *job) MUST_USE;
+
+/// The end of the command of styles, after those of the pairs, and the commands of coefficients.
+void mf_export_lammps_density_styles(const struct export_job *job, FILE *stream);
+
+void mf_export_lammps_density_coefficients(const struct export_job *job, FILE *stream);

@@ -7,7 +7,6 @@
 #include "curves/sum.h"
 #include "export/export_columns.h"
 #include "export/export_density.h"
-#include "export/export_friction.h"
 #include "export/export_start.h"
 #include "defaults/fit_states.h"
 #include "defaults/fit_unknowns.h"

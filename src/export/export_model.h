@@ -28,7 +28,7 @@ struct export_model {
     /// Of fitted friction along pairs, across them and with memory.
     struct table omega, across, memory[PAIR_MEMORY_MAX_MODES];
     const struct table *own_omega;     ///< all friction of the result: that of the setup is
-    struct pair_memory_law own_memory; ///< what other engines could have (export_friction.h)
+    struct pair_memory_law own_memory; ///< what other engines could have (export_columns.h)
     const struct molecules *molecules; ///< of the scene, or NULL
     bool fit;                          ///< the folder is of a fit, not of a simulation
     bool remembers;                    ///< friction has memory: all of it is left out

@@ -5,7 +5,6 @@
 // r/r_c)²): friction is γ over twice the reduced mass, γ/m between beads of one mass.
 #include "export/export_checks.h"
 #include "export/export_script.h"
-#include "export/export_terms.h"
 #include "curves/bonded_table.h"
 
 static bool has_law(const struct bonded_curve *curve) {

@@ -1,11 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file What it costs to replace a friction weight ω by what another engine has, a power law or a
-/// bath of each bead, measured by two simulations: that of the result and one with the other.
+/// @file The friction weights that other engines have, which of them is nearest to a given ω, and
+/// what it costs to replace a friction weight ω by what another engine has, a power law or a bath
+/// of each bead, measured by two simulations: that of the result and one with the other.
 #pragma once
 
+#include "curves/table.h"
 #include "export/export_model.h"
-#include "export/export_power.h"
 #include "observe/measure.h"
+
+/// What friction between pairs an engine has: none; ω = A (1 − r/r_c); A (1 − r/r_c)^s, as LAMMPS's
+/// dpd/ext/tstat; A (1 − (r/r_c)^s), as ESPResSo.
+enum export_friction { EXPORT_NO_FRICTION, EXPORT_LINEAR, EXPORT_POWER, EXPORT_RISING };
+
+struct export_power {
+    enum export_friction family;
+    double amplitude; ///< A [sqrt(μ/τ)]
+    double exponent;  ///< s
+    double cutoff;    ///< r_c [λ]
+    double misfit;    ///< sqrt(Σ w (ω − law)² / Σ w ω²), w = r² exp(−Φ/k_B T)
+};
+
+/// A misfit below which the two count as the same friction: dynamics differ by less than they can
+/// be measured in a run of some minutes.
+#define EXPORT_POWER_BOUND 0.01
+
+/// Least squares of a pair type's ω, weighted as pairs of a dilute gas are; s = 1, which engines
+/// know best, if it is good enough. All zero where ω is.
+/// @param[in] form  the family; an exponent and a cutoff, 0: to be found, and that of ω
+/// Tested: test_export_model.
+struct export_power mf_export_power_fit(const struct table *omega, const struct table *potential,
+                                        int pair, double temperature,
+                                        const struct export_power *form);
 
 enum { EXPORT_BINS = 12, EXPORT_TIMES = 21 };
 
