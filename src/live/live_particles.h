@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file The particles of a simulation as bytes that a browser draws.
+/// @file What the page draws: the particles of a simulation, as bytes, and the candidate of a fit.
 #pragma once
 
 #include "dynamics/simulation.h"
+#include "io/json_write.h"
 #include "live/live_feed.h"
+#include "report/watcher.h"
 
 /// What is sent of each particle besides its position.
 enum live_particles_parts {
@@ -37,3 +39,8 @@ void mf_live_particles_energies(const struct table *potential,
                                 const struct composition *composition,
                                 const struct particles *particles,
                                 const struct neighbours *neighbours, float *energy);
+
+/// The candidate of a fit that was measured last: its curves, its error, its temperature, and g(r)
+/// beside the target. Returns NULL without memory. Tested: tests/live/test_candidate.py.
+struct json_writer *mf_live_candidate_write(const struct watcher_run *run,
+                                            const struct inverse_candidate *candidate);

@@ -8,7 +8,6 @@
 
 #include "base/status.h"
 #include "live/live_guard.h"
-#include "live/live_clients.h"
 
 #include <stdbool.h>
 #include <stddef.h>

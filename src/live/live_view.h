@@ -5,7 +5,6 @@
 #pragma once
 
 #include "io/output.h"
-#include "live/live_control.h"
 #include "live/live_feed.h"
 
 struct json_writer;

@@ -4,7 +4,6 @@
 #include "base/clock.h"
 #include "base/interrupt.h"
 #include "io/json_write.h"
-#include "live/live_candidate.h"
 #include "live/live_particles.h"
 #include "observe/thermodynamics.h"
 

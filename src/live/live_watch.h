@@ -5,7 +5,7 @@
 /// of news: what took long comes less often. The run's results are the same bits with it.
 #pragma once
 
-#include "live/live_scratch.h"
+#include "live/live_folder.h"
 #include "live/live_view.h"
 #include "report/watcher.h"
 

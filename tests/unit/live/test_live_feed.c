@@ -3,7 +3,6 @@
 // What is published, and what is wished.
 #include "base/clock.h"
 #include "base/interrupt.h"
-#include "live/live_control.h"
 #include "live/live_feed.h"
 #include "shared/testing.h"
 

@@ -2,7 +2,7 @@
 //
 // No path leaves the folder: names, links, pipes. The zip is opened by Python's zipfile.
 #include "live/live_folder.h"
-#include "live/live_zip.h"
+#include "live/live_routes.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 

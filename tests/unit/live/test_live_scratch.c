@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Folders for a while, with processes that are killed and others that make theirs meanwhile.
-#include "live/live_scratch.h"
+#include "live/live_folder.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
 
