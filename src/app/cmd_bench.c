@@ -2,9 +2,6 @@
 #include "app/commands.h"
 #include "base/nearest.h"
 #include "bench/bench.h"
-#include "bench/bench_accuracy.h"
-#include "bench/bench_samplers.h"
-#include "bench/bench_stability.h"
 
 #include <omp.h>
 #include <string.h>

@@ -2,8 +2,6 @@
 #include "app/cmd_describe.h"
 
 #include "app/commands.h"
-#include "app/reference.h"
-#include "app/schema.h"
 #include "base/nearest.h"
 
 #include <stdio.h>

@@ -4,8 +4,10 @@
 #pragma once
 
 #include "base/fields.h"
+#include "base/status.h"
 
 #include <stddef.h>
+#include <stdio.h>
 
 enum { DESCRIBE_MAX_TOPICS = 128, DESCRIBE_MAX_OBJECTS = 64, DESCRIBE_MAX_TABLES = 8 };
 
@@ -35,3 +37,13 @@ size_t mf_describe_objects(const char *topic, struct topic_object objects[DESCRI
 /// The first topic that is about nothing but `table`, or NULL: where a document prints it.
 const struct topic *mf_describe_home(const struct topic *topics, size_t count,
                                      const struct field *table);
+
+/// The whole reference: every subcommand with its options, every key of run and scene files.
+/// Tested: test_reference.
+void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_t count);
+void mf_reference_print_man(FILE *stream, const struct topic *topics, size_t count);
+
+/// A JSON Schema (draft 7) of run files, scene files and maps: by it editors complete keys and mark
+/// what is unknown. What rests on other numbers of the file, or on its units, is left to the
+/// program. Fails: NO_MEMORY, IO. Tested: test_schema (python/tests).
+enum status mf_schema_print(FILE *stream, const struct topic *topics, size_t count) MUST_USE;

@@ -20,3 +20,7 @@ void mf_command_print_help(void);
 
 /// What a single subcommand takes.
 void mf_command_print_own_help(const struct command *command);
+
+/// What --live of commands that run something does.
+enum status mf_cmd_live_run(const char *file, const struct run_options *options,
+                            const char *port) MUST_USE;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/cmd_live.h"
 #include "app/commands.h"
 
 #include "base/interrupt.h"

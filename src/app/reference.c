@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/reference.h"
+#include "app/cmd_describe.h"
 
 #include "app/commands.h"
 #include "base/fields.h"

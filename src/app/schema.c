@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "app/schema.h"
+#include "app/cmd_describe.h"
 
 #include "curves/bonded_kind.h"
 #include "io/json_write.h"
