@@ -7,7 +7,6 @@
 #include "bench/bench_case.h"
 #include "bench/bench_lammps.h"
 #include "bench/bench_output.h"
-#include "bench/bench_skips.h"
 #include "report/program.h"
 #include "report/progress.h"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/bench_accuracy.h"
+#include "bench/bench.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "bench/bench_accuracy_output.h"
 #include "bench/bench_case.h"
 #include "report/figures.h"
@@ -186,28 +187,16 @@ static enum status run_point(struct run *run, struct bench_point *point) {
     return STATUS_OK;
 }
 
+static enum status run_task(void *context, size_t k, void *result) {
+    (void)result;
+    return run_point(context, task(context, k));
+}
+
 static enum status run_points(struct run *run) {
-    enum status status = STATUS_OK;
-    char reason[512] = "";
-    const size_t tasks = 1 + run->method_count * run->step_count;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(run->common->threads)
-    for (size_t k = 0; k < tasks; k++) {
-        enum status now;
-#pragma omp critical
-        now = status;
-        if (now != STATUS_OK)
-            continue;
-        const enum status here = run_point(run, task(run, k));
-        if (here == STATUS_OK)
-            continue;
-#pragma omp critical
-        {
-            status = here;
-            snprintf(reason, sizeof reason, "%s", mf_status_message());
-        }
-    }
-    if (status != STATUS_OK)
-        return mf_status_fail(status, "%s", reason);
+    TRY(mf_parallel_try(&(struct parallel_tasks){.count = 1 + run->method_count * run->step_count,
+                                                 .threads = run->common->threads,
+                                                 .run = run_task,
+                                                 .context = run}));
     if (run->reference.status != STATUS_OK)
         return mf_status_fail(STATUS_UNSTABLE,
                               "the reference is unstable at a time step of %g; lower \"time_step\"",

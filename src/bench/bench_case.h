@@ -9,6 +9,8 @@
 #include "report/run_folder.h"
 #include "scene/scene.h"
 
+#include <stdio.h>
+
 enum {
     BENCH_REPEATS = 5,
     BENCH_NAME_SIZE = 128, ///< of a scene or a LAMMPS style
@@ -86,3 +88,14 @@ void mf_bench_case_result(const struct bench_case *bench, const char *scene,
                           struct bench_result *result);
 
 void mf_bench_case_clear(struct bench_case *bench);
+
+/// Time the scene as a fit runs it, and, in turn with it, with one part more or less: each part
+/// that it has left out, each that it skips added. Print a line each, with the instruction set and
+/// precision of `how`.
+/// @param[in] table  for the same tab-separated, or NULL
+/// Fails: as mf_bench_case_begin. Tested: test_bench_case, cli/test_bench.
+enum status mf_bench_skips(FILE *out, FILE *table, const struct bench_scene *scene,
+                           const struct bench_how *how) MUST_USE;
+
+/// The line with the names of the table's columns.
+void mf_bench_skips_head(FILE *table);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/bench_samplers.h"
+#include "bench/bench.h"
 
 #include "base/statistics.h"
 #include "inversion/replicas.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bench/bench_stability.h"
+#include "bench/bench.h"
 
 #include "base/memory.h"
+#include "base/parallel.h"
 #include "bench/bench_case.h"
 #include "bench/bench_point.h"
 #include "observe/thermodynamics.h"
@@ -211,32 +212,32 @@ static enum status run_row(struct run *run, size_t map, size_t method, size_t ro
     return STATUS_OK;
 }
 
+static size_t count_rows(const struct run *run) {
+    return MAPS * run->method_count * ROWS;
+}
+
+static enum status run_task(void *context, size_t k, void *result) {
+    struct run *run = context;
+    const size_t map = k / ROWS / run->method_count;
+    (void)result;
+    return has_map(run, (int)map) ? run_row(run, map, k / ROWS % run->method_count, k % ROWS)
+                                  : STATUS_OK;
+}
+
+static void report(void *context, size_t k, const void *result) {
+    struct run *run = context;
+    (void)k, (void)result;
+    mf_progress_report(&run->progress, ++run->done, count_rows(run), "rows", run->scene.name);
+}
+
 static enum status run_rows(struct run *run) {
-    enum status status = STATUS_OK;
-    char reason[512] = "";
-    const size_t rows = MAPS * run->method_count * ROWS;
     const int threads = run->common->has_threads ? run->common->threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (size_t k = 0; k < rows; k++) {
-        const size_t map = k / ROWS / run->method_count;
-        enum status now;
-#pragma omp critical
-        {
-            now = status;
-            mf_progress_report(&run->progress, run->done++, rows, "rows", run->scene.name);
-        }
-        if (now != STATUS_OK || !has_map(run, (int)map))
-            continue;
-        const enum status here = run_row(run, map, k / ROWS % run->method_count, k % ROWS);
-        if (here == STATUS_OK)
-            continue;
-#pragma omp critical
-        {
-            status = here;
-            snprintf(reason, sizeof reason, "%s", mf_status_message());
-        }
-    }
-    return status == STATUS_OK ? STATUS_OK : mf_status_fail(status, "%s", reason);
+    mf_progress_report(&run->progress, 0, count_rows(run), "rows", run->scene.name);
+    return mf_parallel_try(&(struct parallel_tasks){.count = count_rows(run),
+                                                    .threads = threads,
+                                                    .run = run_task,
+                                                    .take = report,
+                                                    .context = run});
 }
 
 // Telling ----------------------------------------------------------------------------------------

@@ -1,29 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Numbers with their errors, the table for people and its recommendation.
+// The table for people and its recommendation.
 #include "bench/bench_accuracy_output.h"
 
 #include "shared/testing.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-static void assert_number(double value, double error, const char *expected) {
-    char text[48];
-    mf_bench_number_text(text, sizeof text, value, error);
-    assert_string_equal(text, expected);
-}
-
-static void test_numbers_have_as_many_digits_as_their_error_allows(void **state) {
-    (void)state;
-    assert_number(0.031234, 0.00042, "0.0312(4)");
-    assert_number(0.031234, 0.0014, "0.0312(14)");
-    assert_number(-1.5, 0.3, "-1.5(3)");
-    assert_number(12.3, 4, "12(4)");
-    assert_number(1234, 56, "1234(56)");
-    assert_number(0.25, 0, "0.25");
-    assert_number(NAN, 1, "-");
-}
 
 static char *print(const struct bench_diagram *diagram) {
     char *text = NULL;
@@ -67,7 +50,6 @@ static void test_cheapest_limit_is_recommended_with_its_gain(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers_have_as_many_digits_as_their_error_allows),
         cmocka_unit_test(test_cheapest_limit_is_recommended_with_its_gain),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

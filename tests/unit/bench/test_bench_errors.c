@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Errors against a reference, its extrapolation, and where they cross what is wanted.
-#include "bench/bench_errors.h"
+#include "bench/bench_accuracy_output.h"
 
 #include "shared/is_close.h"
 #include "shared/testing.h"
