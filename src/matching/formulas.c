@@ -351,7 +351,7 @@ static size_t spans(void *memory, struct memory_span *span) {
 const struct inverse_method mf_formulas = {
     .name = "formulas",
     .summary = "a formula of r by genetic programming; J. R. Koza (1992)",
-    .kind = INVERSE_MATCHING,
+    POPULATION_RECORD,
     .tables =
         (const struct inverse_table[]){
             {mf_programming_fields, offsetof(struct formulas_parameters, programming), NULL},
@@ -360,13 +360,5 @@ const struct inverse_method mf_formulas = {
             {NULL, 0, NULL}},
     .parameters_size = sizeof(struct formulas_parameters),
     .state_size = sizeof(struct formulas_state),
-    .finds_potential = true,
-    .finds_omega = true,
-    .sampling = mf_population_sampling,
-    .columns = columns,
-    .create = create,
-    .destroy = destroy,
-    .iterate = iterate,
-    .spans = spans,
     .write = mf_formulas_write,
 };

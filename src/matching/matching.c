@@ -402,7 +402,7 @@ static enum status write(const void *memory, const struct inverse_folder *folder
     const struct inverse_method mf_matching_##record = {                                           \
         .name = its_name,                                                                          \
         .summary = its_summary,                                                                    \
-        .kind = INVERSE_MATCHING,                                                                  \
+        POPULATION_RECORD,                                                                         \
         .own = &(const struct driven){&mf_##record##_optimiser,                                    \
                                       offsetof(struct record##_settings, optimiser)},              \
         .tables =                                                                                  \
@@ -414,15 +414,7 @@ static enum status write(const void *memory, const struct inverse_folder *folder
                 {NULL, 0, NULL}},                                                                  \
         .parameters_size = sizeof(struct record##_settings),                                       \
         .state_size = sizeof(struct state),                                                        \
-        .finds_potential = true,                                                                   \
-        .finds_omega = true,                                                                       \
         .knows_molecules = true,                                                                   \
-        .sampling = mf_population_sampling,                                                        \
-        .columns = columns,                                                                        \
-        .create = create,                                                                          \
-        .destroy = destroy,                                                                        \
-        .iterate = iterate,                                                                        \
-        .spans = spans,                                                                            \
         .write = write,                                                                            \
     };
 OPTIMISERS(MATCHING)

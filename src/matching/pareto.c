@@ -276,7 +276,7 @@ static size_t spans(void *memory, struct memory_span *span) {
 const struct inverse_method mf_pareto = {
     .name = "pareto",
     .summary = "Pareto front of all targets by NSGA-II, without weights; K. Deb et al. (2002)",
-    .kind = INVERSE_MATCHING,
+    POPULATION_RECORD,
     .tables = (const struct inverse_table[]){{mf_nsga2_fields,
                                               offsetof(struct pareto_parameters, nsga2), NULL},
                                              {own_fields, 0, NULL},
@@ -285,14 +285,6 @@ const struct inverse_method mf_pareto = {
                                              {NULL, 0, NULL}},
     .parameters_size = sizeof(struct pareto_parameters),
     .state_size = sizeof(struct pareto_state),
-    .finds_potential = true,
-    .finds_omega = true,
     .knows_molecules = true,
-    .sampling = mf_population_sampling,
-    .columns = columns,
-    .create = create,
-    .destroy = destroy,
-    .iterate = iterate,
-    .spans = spans,
     .write = mf_pareto_write_tables,
 };

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/output.h"
-#include "matching/curve_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -131,13 +130,14 @@ static enum status write_log(const struct pareto_state *state,
 static enum status write_curves(const struct pareto_state *state,
                                 const struct inverse_folder *folder, const struct line *lines,
                                 size_t members) {
-    OWNED struct curve_tables_member *member = NULL;
+    OWNED struct population_member *member = NULL;
     TRY_ARRAY(member, members);
     for (size_t k = 0; k < members; k++) {
         member[k].variables = mf_nsga2_parent(&state->nsga2, lines[k].parent);
         snprintf(member[k].name, sizeof member[k].name, "%zu", k + 1);
     }
-    return mf_curve_tables_write(&state->parametrisation, folder, "pareto", NULL, member, members);
+    return mf_population_write_curves(&state->parametrisation, folder, "pareto", NULL, member,
+                                      members);
 }
 
 enum status mf_pareto_write_tables(const void *memory, const struct inverse_folder *folder) {

@@ -86,7 +86,7 @@ void mf_population_next_round(struct population *population);
 /// With a warm start, and before the first round of candidates that have one potential: let the
 /// first of them that can settle where all simulations are to begin. Where none can, and otherwise,
 /// they begin as the scene says. Fails: INTERRUPTED, NO_MEMORY, BAD_INPUT.
-/// (population_settle.c)
+/// (population_check.c)
 enum status mf_population_settle(struct population *population,
                                  const struct optimiser_round *round) MUST_USE;
 
@@ -148,9 +148,26 @@ void mf_population_expect(struct population *population, double error, double no
 enum status mf_population_write(const struct population *population,
                                 const struct inverse_folder *folder) MUST_USE;
 
+enum { POPULATION_NAME_SIZE = 24 };
+
+/// One of several candidates whose curves stand side by side in tables.
+struct population_member {
+    const double *variables;
+    char name[POPULATION_NAME_SIZE]; ///< of its column
+};
+
+/// Write a table for each curve of each unknown, `prefix`_potential.tsv and so on: r and a column
+/// for each member.
+/// @param[in] comment  first line, or NULL
+/// Fails: IO, NO_MEMORY. Tested: cli/test_fit, cli/test_fit_pareto.
+enum status mf_population_write_curves(const struct parametrisation *parametrisation,
+                                       const struct inverse_folder *folder, const char *prefix,
+                                       const char *comment, const struct population_member *member,
+                                       size_t members) MUST_USE;
+
 void mf_population_reset_survey(struct population *population);
 
-/// @name What failed, and why (matching/population_failures.c)
+/// @name What failed, and why (matching/population_tables.c)
 
 /// Add a simulation, if it failed.
 void mf_population_add_failure(struct population_failures *failures,
@@ -160,6 +177,12 @@ void mf_population_add_failure(struct population_failures *failures,
 /// those that failed have failed of. Tested: test_population_failures.
 void mf_population_report_failure(const struct population *population, const char *why,
                                   char reason[INVERSE_REASON_SIZE]);
+
+/// What the record of every method of the kind INVERSE_MATCHING has: its functions of these names.
+#define POPULATION_RECORD                                                                          \
+    .kind = INVERSE_MATCHING, .finds_potential = true, .finds_omega = true,                        \
+    .sampling = mf_population_sampling, .columns = columns, .create = create, .destroy = destroy,  \
+    .iterate = iterate, .spans = spans
 
 enum { CANDIDATES_SPANS = 12 + SURROGATE_SPANS };
 size_t mf_population_spans(struct population *population, struct memory_span *spans);

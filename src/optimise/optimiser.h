@@ -102,6 +102,12 @@ const struct optimiser *mf_optimiser_find(const char *name);
 
 /// @name For those who write one
 
+/// What the record of every optimiser has: its functions of these names, and `struct state`.
+#define OPTIMISER_RECORD                                                                           \
+    .state_size = sizeof(struct state), .max_rounds = max_rounds, .create = create,                \
+    .destroy = destroy, .ask = ask, .tell = tell, .best_candidate = best_candidate,                \
+    .spread = spread, .discard_above = discard_above, .settled = settled, .spans = spans
+
 /// Fails with BAD_INPUT unless there are variables and a box of finite, positive size, and the
 /// start, if there is one, is finite.
 enum status mf_optimiser_check_space(const struct optimiser_space *space) MUST_USE;
