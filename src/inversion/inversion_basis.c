@@ -5,7 +5,7 @@
 #include "base/statistics.h"
 #include "curves/shape.h"
 #include "inversion/inversion_state.h"
-#include "problem/parametrisation_bonded.h"
+#include "problem/parametrisation.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>

@@ -3,7 +3,7 @@
 /// what the samples of an inversion say of these.
 ///
 /// Curves of pairs are cubic B-splines from the first known bin to the cutoff, where they are 0;
-/// those of groups are as in problem/parametrisation_bonded.h, without what is added to.
+/// those of groups are as in problem/parametrisation.h, without what is added to.
 ///
 /// The relative entropy of the target to the model, S_rel = ⟨ln(p_target/p_model)⟩_target, has the
 /// derivatives

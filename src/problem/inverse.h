@@ -133,7 +133,7 @@ static inline const struct curve *inverse_law_curve(const struct inverse_law *la
 }
 
 /// How a method that moves variables writes U(q): as functions times coefficients that are added to
-/// the Boltzmann inversion of the target (problem/parametrisation_bonded.h).
+/// the Boltzmann inversion of the target (problem/parametrisation.h).
 struct bonded_shape {
     int64_t coefficients;
     double maximum; ///< of a coefficient, up and down [k_B T_0]

@@ -3,7 +3,6 @@
 
 #include "curves/formula.h"
 #include "curves/shape.h"
-#include "problem/parametrisation_bonded.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,10 +1,200 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+#include "curves/shape.h"
+#include "problem/group_kind.h"
 #include "problem/parametrisation.h"
 
-#include "problem/parametrisation_bonded.h"
-
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
+
+// Curves ------------------------------------------------------------------------------------------
+
+enum status mf_parametrisation_curves_init(const struct parametrisation *parametrisation,
+                                           struct parametrisation_curves *curves) {
+    *curves = (struct parametrisation_curves){0};
+    for (int k = 0; k < INVERSE_PARAMETERS; k++)
+        curves->parameter[k].error = NAN;
+    for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
+        curves->number[n].error = NAN;
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t points = mf_unknowns_points(&parametrisation->unknowns, kind);
+        if (points == 0)
+            continue;
+        TRY_ARRAY(curves->value[kind], points);
+        TRY_ARRAY(curves->error[kind], points);
+        TRY_ARRAY(curves->flat[kind], INVERSE_FLAT * points);
+    }
+    return STATUS_OK;
+}
+
+void mf_parametrisation_curves_clear(struct parametrisation_curves *curves) {
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        mf_memory_free(curves->value[kind]);
+        mf_memory_free(curves->error[kind]);
+        mf_memory_free(curves->flat[kind]);
+    }
+    *curves = (struct parametrisation_curves){0};
+}
+
+void mf_parametrisation_curves_show(const struct parametrisation *parametrisation,
+                                    const double *variables, struct parametrisation_curves *curves,
+                                    struct inverse_step *step) {
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        if (curves->value[kind] == NULL)
+            continue;
+        mf_parametrisation_curve(parametrisation, kind, variables, curves->value[kind]);
+        step->curve[kind] = curves->value[kind];
+        step->curve_error[kind] = curves->error[kind];
+        step->curve_flat[kind] = curves->flat[kind];
+    }
+    mf_parametrisation_parameters(parametrisation, variables, NULL, step->parameter);
+    for (int k = 0; k < INVERSE_PARAMETERS; k++)
+        step->parameter[k].error = curves->parameter[k].error;
+    mf_parametrisation_numbers(parametrisation, variables, NULL, step->number);
+    for (int n = 0; n < INVERSE_MAX_NUMBERS; n++)
+        step->number[n].error = curves->number[n].error;
+}
+
+enum status mf_parametrisation_curves_bands(const struct parametrisation *parametrisation,
+                                            const double *variables, const double *covariance,
+                                            struct parametrisation_curves *curves) {
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        if (curves->error[kind])
+            TRY(mf_parametrisation_band(parametrisation, kind, variables, covariance,
+                                        curves->error[kind], curves->flat[kind]));
+    mf_parametrisation_parameters(parametrisation, variables, covariance, curves->parameter);
+    mf_parametrisation_numbers(parametrisation, variables, covariance, curves->number);
+    return STATUS_OK;
+}
+
+size_t mf_parametrisation_curves_spans(const struct parametrisation *parametrisation,
+                                       struct parametrisation_curves *curves,
+                                       struct memory_span *spans) {
+    size_t n = 0;
+    spans[n++] = (struct memory_span){curves->parameter, sizeof curves->parameter};
+    spans[n++] = (struct memory_span){curves->number, sizeof curves->number};
+    for (int kind = 0; kind < UNKNOWNS; kind++) {
+        const size_t bytes = mf_unknowns_points(&parametrisation->unknowns, kind) * sizeof(double);
+        if (bytes == 0)
+            continue;
+        spans[n++] = (struct memory_span){curves->error[kind], bytes};
+        spans[n++] = (struct memory_span){curves->flat[kind], INVERSE_FLAT * bytes};
+    }
+    return n;
+}
+
+// Coefficients of bonds ---------------------------------------------------------------------------
+
+/// Sines and cosines of a dihedral, which goes round.
+static void fill_waves(const struct bonded_grid *grid, size_t count, double *basis) {
+    for (size_t k = 0; k < grid->known; k++) {
+        const double phi = BONDED_RADIANS * mf_bonded_grid_place(grid, k);
+        for (size_t n = 0; n < count; n++) {
+            const double turns = (double)(n / 2 + 1);
+            basis[k * count + n] = n % 2 ? sin(turns * phi) : cos(turns * phi);
+        }
+    }
+}
+
+/// B-splines from the first to the last known bin. The one that is left out at the end is the sum
+/// of the others but for a constant; where the slope is left out, too, so is the first.
+static enum status fill_splines(const struct bonded_grid *grid, size_t count, double *basis) {
+    const size_t left_out = grid->is_level, all = count + left_out;
+    OWNED double *place = NULL, *whole = NULL;
+    TRY_ARRAY(place, grid->known);
+    TRY_ARRAY(whole, grid->known * all);
+    for (size_t k = 0; k < grid->known; k++)
+        place[k] = (double)k / (double)(grid->known - 1);
+    TRY(mf_shape_basis(mf_shapes[INVERSE_CURVE_BSPLINE], all, place, grid->known, whole));
+    for (size_t k = 0; k < grid->known; k++)
+        memcpy(basis + k * count, whole + k * all + left_out, count * sizeof *basis);
+    return STATUS_OK;
+}
+
+/// Take off a function its part along another, x, by the target: Σ p x y/Σ p x² of it.
+static void take_off(const struct bonded_grid *grid, size_t count, const double *x, double *y) {
+    double products = 0, squares = 0;
+    for (size_t k = 0; k < grid->known; k++) {
+        const double p = grid->target[grid->first + k];
+        products += p * x[k] * y[k * count];
+        squares += p * x[k] * x[k];
+    }
+    for (size_t k = 0; k < grid->known; k++)
+        y[k * count] -= products / squares * x[k];
+}
+
+enum status mf_parametrisation_bonded_basis(const struct bonded_grid *grid, size_t count,
+                                            double *basis) {
+    OWNED double *constant = NULL, *line = NULL;
+    TRY_ARRAY(constant, grid->known);
+    TRY_ARRAY(line, grid->known);
+    for (size_t k = 0; k < grid->known; k++) {
+        constant[k] = 1;
+        line[k] = (double)k;
+    }
+    take_off(grid, 1, constant, line);
+    if (mf_group_kind_is_periodic(grid->unknown->order))
+        fill_waves(grid, count, basis);
+    else
+        TRY(fill_splines(grid, count, basis));
+    for (size_t n = 0; n < count; n++) {
+        take_off(grid, count, constant, basis + n);
+        if (grid->is_level)
+            take_off(grid, count, line, basis + n);
+    }
+    return STATUS_OK;
+}
+
+/// (k_B T σ/p)², of what was not seen that of what is hardly seen.
+static void find_variances(const struct bonded_grid *grid, const double *target_error,
+                           double *variance) {
+    static const double min = 1e-12;
+    double peak = 0;
+    for (size_t k = 0; k < grid->known; k++)
+        peak = fmax(peak, grid->target[grid->first + k]);
+    for (size_t k = 0; k < grid->known; k++) {
+        const double p = fmax(grid->target[grid->first + k], mf_bonded_distribution_seen * peak);
+        const double error = target_error[grid->first + k];
+        variance[k] = fmax(min, pow(grid->temperature * (isfinite(error) ? error : 0) / p, 2));
+    }
+}
+
+enum status mf_parametrisation_bonded_rough(const struct bonded_grid *grid,
+                                            const double *target_error, const double *basis,
+                                            double *error) {
+    static const double ridge = 1e-12;
+    const size_t own = (size_t)grid->unknown->shape.coefficients, count = own + 1;
+    OWNED double *normal = NULL, *row = NULL, *solved = NULL, *variance = NULL;
+    TRY_ARRAY(normal, count * count);
+    TRY_ARRAY(row, count);
+    TRY_ARRAY(solved, count);
+    TRY_ARRAY(variance, grid->known);
+    find_variances(grid, target_error, variance);
+    gsl_matrix_view factor = gsl_matrix_view_array(normal, count, count);
+    const gsl_vector_const_view right = gsl_vector_const_view_array(row, count);
+    gsl_vector_view left = gsl_vector_view_array(solved, count);
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t k = 0; k < grid->known; k++) {
+            for (size_t a = 0; a < count; a++)
+                row[a] = a < own ? basis[k * own + a] : 1;
+            for (size_t a = 0; a < count && pass == 0; a++)
+                for (size_t b = 0; b < count; b++)
+                    normal[a * count + b] +=
+                        row[a] * row[b] / variance[k] * (a == b ? 1 + ridge : 1);
+            if (pass == 0)
+                continue;
+            gsl_linalg_cholesky_solve(&factor.matrix, &right.vector, &left.vector);
+            double fitted = 0;
+            for (size_t a = 0; a < count; a++)
+                fitted += row[a] * solved[a];
+            error[k] = sqrt(fmax(0, variance[k] - fitted));
+        }
+        if (pass == 0)
+            gsl_linalg_cholesky_decomp1(&factor.matrix);
+    }
+    return STATUS_OK;
+}
 
 /// How the curve changes with each variable, shape [points, variables of it].
 static enum status find_slopes(const struct parametrisation *parametrisation,

@@ -11,6 +11,7 @@
 
 #include "base/fields.h"
 #include "base/status.h"
+#include "dynamics/integrator.h"
 #include "system/box_vectors.h"
 #include "system/composition.h"
 
@@ -81,3 +82,13 @@ struct sampling_engine {
     enum status (*next)(void *frames, double *const position[3], struct engine_sample *sample);
     void (*end)(void *frames); ///< of NULL: nothing
 };
+
+/// Frames of another engine as a simulation, of which a step takes the next frame: what observes
+/// simulations then observes those. The parameters of the integrator say whose frames they are.
+struct engine_replay {
+    const struct sampling_engine *engine;
+    struct engine_piece piece;
+};
+
+/// Temperature and pressure are those that the engine tells. Tested: cli/test_fit_engine.
+extern const struct integrator mf_sampling_engine_replay;

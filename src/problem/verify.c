@@ -8,7 +8,7 @@
 #include "observe/kirkwood_buff_observable.h"
 #include "observe/motion.h"
 #include "observe/stationary.h"
-#include "problem/engine_replay.h"
+#include "problem/sampling_engine.h"
 #include "problem/group_kind.h"
 #include "problem/verify_agreement.h"
 
@@ -72,7 +72,7 @@ static enum status replay_replica(const struct work *work, size_t number,
     piece->seed = setup->seed;
     piece->potential = work->potential;
     piece->molecules = mf_molecules_find(problem.scene.interaction, problem.scene.interactions);
-    problem.scene.integrator = &mf_engine_replay;
+    problem.scene.integrator = &mf_sampling_engine_replay;
     problem.scene.integrator_parameters = &work->replay[number];
     if (engine->announce)
         TRY(engine->announce(engine->context, piece));

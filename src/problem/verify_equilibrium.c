@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "problem/verify_agreement.h"
-
 #include "base/memory.h"
+#include "base/statistics.h"
+#include "observe/kirkwood_buff_observable.h"
 #include "observe/rdf_observable.h"
 #include "observe/stationary.h"
 #include "observe/thermodynamics.h"
+#include "problem/verify_agreement.h"
+
+#include <math.h>
 
 /// Chance with which any of the looks complains of samples in equilibrium.
 static const double false_alarm = 1e-3;
@@ -132,4 +135,150 @@ enum status mf_verify_equilibrium(const struct measurement *replicas, size_t cou
     TRY(look_at_series(replicas, count, THERMODYNAMICS_POTENTIAL_ENERGY, "the energy", &min, text));
     TRY(look_at_series(replicas, count, THERMODYNAMICS_PRESSURE, "the pressure", &min, text));
     return look_at_pairs(replicas, count, &min, text);
+}
+
+// What is known -----------------------------------------------------------------------------------
+
+/// Relative errors of the rms difference from a target, and of temperatures, that are enough: three
+/// of the latter are the 1 % by which a time step is judged.
+static const double enough_distance = 0.1, enough_temperature = 1.0 / 300;
+
+// Distances ---------------------------------------------------------------------------------------
+
+/// Exchange the last replica and that at `k`.
+static void exchange_with_last(struct measurement *replicas, size_t count, size_t k) {
+    const struct measurement last = replicas[count - 1];
+    replicas[count - 1] = replicas[k];
+    replicas[k] = last;
+}
+
+static enum status find_errors(struct measurement *replicas, size_t count,
+                               const struct target_distance *of_all, double *error) {
+    enum status status = STATUS_OK;
+    const struct targets *targets = replicas->targets;
+    struct observed without = {0};
+    double squares[TARGETS] = {0};
+    CHECK(mf_measurement_values_init(&without, targets));
+    for (size_t k = 0; k < count && count > 1; k++) {
+        struct target_distance distance[TARGETS];
+        exchange_with_last(replicas, count, k);
+        status = mf_measurement_result(replicas, count - 1, &without);
+        exchange_with_last(replicas, count, k);
+        CHECK(status);
+        mf_measurement_distance(&without, targets, distance);
+        for (int kind = 0; kind < TARGETS; kind++) {
+            const double difference = distance[kind].rms - of_all[kind].rms;
+            squares[kind] += difference * difference;
+        }
+    }
+    for (int kind = 0; kind < TARGETS; kind++)
+        error[kind] = count > 1 ? sqrt(squares[kind] * (double)(count - 1) / (double)count) : NAN;
+done:
+    mf_measurement_values_clear(&without);
+    return status;
+}
+
+static enum status find_rdf_error(const struct measurement *replicas, size_t count, double *rms,
+                                  double *error) {
+    OWNED struct rdf *rdf = NULL;
+    const struct targets *targets = replicas->targets;
+    if (!targets_ask(targets, TARGET_RDF))
+        return STATUS_OK;
+    TRY_ARRAY(rdf, count);
+    for (size_t k = 0; k < count; k++) {
+        const struct rdf_observed *observed =
+            mf_measurement_state(&replicas[k], &mf_rdf_observable);
+        rdf[k] = observed->counted;
+    }
+    TRY(mf_rdf_distance(rdf, count, targets->target[TARGET_RDF].value, rms, error));
+    mf_statistics_mark_unknown_errors(error, 1);
+    return STATUS_OK;
+}
+
+enum status mf_verify_distances(struct measurement *replicas, size_t count,
+                                struct observed *observed, struct target_distance *distance,
+                                double *error) {
+    TRY(mf_measurement_values_init(observed, replicas->targets));
+    TRY(mf_measurement_result(replicas, count, observed));
+    mf_measurement_distance(observed, replicas->targets, distance);
+    TRY(find_errors(replicas, count, distance, error));
+    return find_rdf_error(replicas, count, &distance[TARGET_RDF].rms, &error[TARGET_RDF]);
+}
+
+// What is known -----------------------------------------------------------------------------------
+
+static bool is_known(double value, double error) {
+    return !isfinite(value) || error <= enough_temperature * fabs(value);
+}
+
+static enum status knows_temperatures(const struct measurement *replicas, size_t count,
+                                      bool *known) {
+    OWNED struct thermodynamics *own = NULL;
+    TRY_ARRAY(own, count);
+    for (size_t k = 0; k < count; k++) {
+        const struct thermodynamics *observed =
+            mf_measurement_state(&replicas[k], &mf_thermodynamics_observable);
+        own[k] = *observed;
+    }
+    const struct thermodynamics_summary found = mf_thermodynamics_result(own, count);
+    *known = is_known(found.temperature, found.temperature_error) &&
+             is_known(found.temperature_configurational, found.temperature_configurational_error);
+    return STATUS_OK;
+}
+
+static double mean_square(const double *values, size_t count) {
+    double sum = 0;
+    for (size_t k = 0; k < count; k++)
+        sum += isfinite(values[k]) ? values[k] * values[k] : 0;
+    return sum / (double)count;
+}
+
+/// A curve: its distance within a tenth, of which no more than half of the square is the samples'
+/// own noise, so that it tells of the target and of what was found. Four replicas know an error
+/// badly: it is no less than that of the noise. A number: as well as that of the target. An error
+/// of 0 is not known.
+static bool knows_distance(const struct target *target, const double *own_error,
+                           const struct target_distance *distance, double error, bool number) {
+    const double own = mean_square(own_error, target->count);
+    const double of_target = mean_square(target->error, target->count);
+    if (number)
+        return own > 0 && own <= of_target;
+    return own > 0 && error <= enough_distance * distance->rms &&
+           own <= 0.5 * distance->rms * distance->rms;
+}
+
+static enum status knows_distances(struct measurement *replicas, size_t count, bool *known) {
+    enum status status = STATUS_OK;
+    struct observed observed = {0};
+    struct target_distance distance[TARGETS];
+    double error[TARGETS];
+    CHECK(mf_verify_distances(replicas, count, &observed, distance, error));
+    *known = true;
+    for (int kind = 0; kind < TARGETS; kind++) {
+        const struct target *target = &replicas->targets->target[kind];
+        const bool number = target->count == 1 || kind == mf_kirkwood_buff_kind();
+        if (kind != TARGET_RDF)
+            error[kind] = fmax(error[kind], sqrt(distance[kind].variance));
+        if (target->count > 0)
+            *known = *known && knows_distance(target, observed.error[kind], &distance[kind],
+                                              error[kind], number);
+    }
+done:
+    mf_measurement_values_clear(&observed);
+    return status;
+}
+
+enum status mf_verify_knows(struct measurement *replicas, size_t count, bool *known) {
+    char drifts[VERIFY_EQUILIBRIUM_SIZE];
+    *known = false;
+    if (count < 2)
+        return STATUS_OK;
+    TRY(knows_temperatures(replicas, count, known));
+    if (*known)
+        TRY(knows_distances(replicas, count, known));
+    if (*known) {
+        TRY(mf_verify_equilibrium(replicas, count, drifts));
+        *known = drifts[0] == '\0';
+    }
+    return STATUS_OK;
 }

@@ -2,7 +2,6 @@
 //
 // U of groups made of coefficients: what the functions can make, what stays in the base of the
 // target's noise, and groups beside pairs in one vector of variables.
-#include "problem/parametrisation_bonded.h"
 
 #include "base/memory.h"
 #include "base/rng.h"
