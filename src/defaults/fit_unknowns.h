@@ -65,7 +65,3 @@ bool mf_fit_friction_take(struct fit_unknown *omega, enum fit_friction family);
 /// to be added but never below 0. Sets what the file leaves out: none where it gives the range of
 /// the coefficients, which then is that of the curve; and the lower end of the range.
 void mf_fit_base_check(struct fit_unknown *unknown, struct json_object *object);
-
-/// Find the bases of a problem that has been checked, for methods that move coefficients.
-/// Fails: NO_MEMORY; BAD_INPUT as mf_inversion_start_curve.
-enum status mf_fit_base_find(struct fit_file *fit) MUST_USE;
