@@ -178,10 +178,6 @@ const char *mesofit_run_line(struct mesofit_run *run, size_t number) {
 
 // Who watches -------------------------------------------------------------------------------------
 
-static void begin(void *context, const struct watcher_run *watched) {
-    (void)context, (void)watched;
-}
-
 static void report(void *context, const struct watcher_progress *at) {
     struct mesofit_run *run = context;
     struct mesofit_run_progress progress = {
@@ -210,25 +206,6 @@ static void print(void *context, const char *line) {
     pthread_mutex_unlock(&run->lock);
 }
 
-static void written(void *context) {
-    (void)context;
-}
-
-static int64_t steps(void *context) {
-    (void)context;
-    return 0;
-}
-
-static bool change(void *context, struct simulation_change *wanted) {
-    (void)context, (void)wanted;
-    return false;
-}
-
-static bool damp(void *context, double *wanted) {
-    (void)context, (void)wanted;
-    return false;
-}
-
 // What is to be done ------------------------------------------------------------------------------
 
 static const struct command *const commands[] = {&mf_command_measure, &mf_command_fit,
@@ -237,14 +214,7 @@ static const struct command *const commands[] = {&mf_command_measure, &mf_comman
 
 static enum status carry_out(struct mesofit_run *run, size_t count, const char *const *words,
                              const struct caller_observables *callers) {
-    const struct watcher watcher = {.context = run,
-                                    .begin = begin,
-                                    .report = report,
-                                    .print = print,
-                                    .write = written,
-                                    .steps = steps,
-                                    .change = change,
-                                    .damp = damp};
+    const struct watcher watcher = {.context = run, .report = report, .print = print};
     const struct command *command = NULL;
     CLEARED_BY(mf_command_line_clear) struct command_line line = {0};
     TRY(mf_command_find(commands, words[0], &command));

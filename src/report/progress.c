@@ -249,23 +249,23 @@ void mf_progress_print(struct progress *progress, const char *format, ...) {
 
 void mf_progress_report_run(struct progress *progress, const struct watcher_run *run) {
     progress->folder = run->folder;
-    if (progress->watcher)
+    if (progress->watcher && progress->watcher->begin)
         progress->watcher->begin(progress->watcher->context, run);
 }
 
 void mf_progress_report_written(const struct progress *progress) {
-    if (progress->watcher)
+    if (progress->watcher && progress->watcher->write)
         progress->watcher->write(progress->watcher->context);
 }
 
 bool mf_progress_ask_change(const struct progress *progress, struct simulation_change *change) {
     const struct watcher *watcher = progress->watcher;
-    return watcher && watcher->change(watcher->context, change);
+    return watcher && watcher->change && watcher->change(watcher->context, change);
 }
 
 bool mf_progress_ask_damping(const struct progress *progress, double *damping) {
     const struct watcher *watcher = progress->watcher;
-    return watcher && watcher->damp(watcher->context, damping);
+    return watcher && watcher->damp && watcher->damp(watcher->context, damping);
 }
 
 void mf_progress_print_scale(struct progress *progress, const struct units *units) {

@@ -36,6 +36,7 @@ struct watcher_progress {
     bool open;                                 ///< the total is unknown
 };
 
+/// All but `report` and `print` may be NULL.
 struct watcher {
     void *context;
     void (*begin)(void *context, const struct watcher_run *run);

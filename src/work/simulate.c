@@ -9,7 +9,6 @@
 #include "mesofit.h"
 #include "report/progress.h"
 #include "work/explain.h"
-#include "work/simulate_changes.h"
 #include "work/simulate_observables.h"
 
 #include <math.h>
@@ -305,7 +304,8 @@ static enum status measure(struct run *run, const struct measure_listener *liste
 
 static enum status carry_out(struct run *run) {
     const struct watcher *watcher = run->progress.watcher;
-    const struct measure_listener listener = {report, run, watcher ? steps : NULL};
+    const struct measure_listener listener = {report, run,
+                                              watcher && watcher->steps ? steps : NULL};
     report_run(run);
     warn(run);
     enum status status = measure(run, &listener);

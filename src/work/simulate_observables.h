@@ -2,7 +2,10 @@
 /// @file What a scene file asks to be measured: all of the list that it names or that always is.
 #pragma once
 
+#include "dynamics/simulation_change.h"
 #include "io/json.h"
+#include "io/json_write.h"
+#include "io/units_scale.h"
 #include "observe/caller_observable.h"
 #include "observe/measure.h"
 #include "report/progress.h"
@@ -83,3 +86,29 @@ enum status mf_simulate_observables_judge(const struct simulate_observables *obs
 /// Say what a person is to know, and what is not to be trusted.
 void mf_simulate_observables_print(const struct simulate_observables *observables,
                                    const struct observable_results *results, struct progress *to);
+
+// What a person has changed of a simulation while it ran
+// -------------------------------------------
+
+enum { SIMULATE_CHANGES_MAX = 256 };
+
+/// The last ones; plain data, which a checkpoint keeps.
+struct simulate_changes {
+    size_t count; ///< that are kept
+    struct simulation_change change[SIMULATE_CHANGES_MAX];
+};
+
+/// Keep one more: where nothing has passed since the last one, in its place. False if there are too
+/// many.
+bool mf_simulate_changes_add(struct simulate_changes *changes,
+                             const struct simulation_change *change);
+
+/// The last one, or NULL.
+const struct simulation_change *mf_simulate_changes_last(const struct simulate_changes *changes);
+
+/// Put "changed", a list, if there are any. Tested: tests/live/test_changes.py.
+void mf_simulate_changes_write(const struct simulate_changes *changes, struct json_writer *writer);
+
+/// Say what the last one is.
+void mf_simulate_changes_print(const struct simulate_changes *changes, const struct units *units,
+                               struct progress *to);
