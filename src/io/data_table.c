@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -15,6 +16,7 @@ struct layout {
     size_t columns;   ///< at least, and strictly numbers
     bool flagged;     ///< a letter ends each row
     bool core;        ///< the second number of a row may be infinite
+    bool result;      ///< of this program: any number may be unknown or infinite
     char separator;   ///< of the first row
     bool commas;      ///< may be those of decimals
     char decimal;     ///< how decimals begin: '.', ',', or 0 until one is seen
@@ -170,11 +172,19 @@ static bool is_infinite(const struct data_word *word) {
     return false;
 }
 
+/// Whether the word is a number as this program prints it, also one that is not known or infinite.
+static bool is_printed(const struct data_word *word, double *value) {
+    char *end;
+    *value = strtod(word->begin, &end);
+    return word->length > 0 && end == word->begin + word->length;
+}
+
 /// Read the number that is exactly `word`; "nan" where it is allowed.
 static enum status read_number(const char *file, size_t line, size_t column,
                                const struct data_word *word, struct layout *layout, size_t number,
                                double *value) {
     if (mf_data_word_is_number(word, layout->commas, &layout->decimal, value) ||
+        (layout->result && is_printed(word, value)) ||
         (number >= layout->columns && word->length == 3 && strncasecmp(word->begin, "nan", 3) == 0))
         return STATUS_OK;
     if (layout->core && number == 1 && is_infinite(word)) {
@@ -360,6 +370,10 @@ enum status mf_data_table_read_core(struct data_table *table, const char *file) 
                                   "where a potential begins, may be infinite",
                                   file, table->line[k]);
     return STATUS_OK;
+}
+
+enum status mf_data_table_read_result(struct data_table *table, const char *file) {
+    return read_table(table, file, &(struct layout){.columns = 1, .result = true});
 }
 
 void mf_data_table_clear(struct data_table *table) {

@@ -45,6 +45,10 @@ enum status mf_data_table_read_flagged(struct data_table *table, const char *fil
 /// are left out. Fails, too: BAD_INPUT if one is behind a finite one. Tested: test_data_table.
 enum status mf_data_table_read_core(struct data_table *table, const char *file) MUST_USE;
 
+/// The same of a result of this program, whose numbers may be nan or infinite, not known; only
+/// those of the first column are.
+enum status mf_data_table_read_result(struct data_table *table, const char *file) MUST_USE;
+
 void mf_data_table_clear(struct data_table *table);
 
 /// Check that column `column` grows strictly and starts at `min` or above.

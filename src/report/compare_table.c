@@ -2,6 +2,7 @@
 #include "report/compare_table.h"
 
 #include "base/memory.h"
+#include "base/number_text.h"
 #include "base/visible.h"
 #include "io/data_table.h"
 
@@ -11,32 +12,23 @@
 
 enum {
     PATH_SIZE = OUTPUT_PATH_SIZE + 64,
-    CELL_SIZE = 64,    ///< one entry of the printed table
+    CELL_SIZE = 64,    ///< one entry of the printed table, and NUMBER_TEXT_SIZE fits
     MAX_NUMBERS = 128, ///< in a summary
     HEADER_SIZE = 96,  ///< of one column of compare.tsv
 };
 
 // Columns of the printed table --------------------------------------------------------------------
 
-/// "0.0123(4)": the error in units of the last digit, with two digits if it begins with 1.
-static void print_with_error(char *cell, double value, double error) {
-    if (!isfinite(value) || !(error > 0) || !isfinite(error)) {
-        snprintf(cell, CELL_SIZE, isfinite(value) ? "%.4g" : "-", value);
-        return;
-    }
-    int decimals = -(int)floor(log10(error));
-    if (error * pow(10, decimals) < 1.95)
-        decimals++;
-    if (error * pow(10, decimals) >= 9.5 && error * pow(10, decimals) < 10)
-        decimals--;
-    if (decimals < 0)
-        decimals = 0;
-    snprintf(cell, CELL_SIZE, "%.*f(%.0f)", decimals, value, error * pow(10, decimals));
-}
-
 static void print_number(char *cell, const char *format, double value) {
     if (isfinite(value))
         snprintf(cell, CELL_SIZE, format, value);
+    else
+        snprintf(cell, CELL_SIZE, "-");
+}
+
+static void print_with_error(char *cell, double value, double error) {
+    if (isfinite(value))
+        mf_number_text(value, error, cell);
     else
         snprintf(cell, CELL_SIZE, "-");
 }

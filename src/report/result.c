@@ -2,10 +2,10 @@
 #include "report/result.h"
 
 #include "base/memory.h"
+#include "io/data_table.h"
 #include "io/json.h"
 #include "io/output.h"
 #include "problem/targets.h"
-#include "report/result_tables.h"
 
 #include <errno.h>
 #include <math.h>
@@ -40,7 +40,7 @@ static void find_distance(struct result_summary *summary) {
         summary->error_over_noise = sqrt(sum / (double)count);
 }
 
-// Results -----------------------------------------------------------------------------------------
+// The summary -------------------------------------------------------------------------------------
 
 enum { PATH_SIZE = OUTPUT_PATH_SIZE + 64 };
 
@@ -174,14 +174,6 @@ static void read_simulated_diffusion(struct json_object *root, struct result_sum
     mf_json_fields(&motion, fields, summary);
 }
 
-/// Version 0.1.0 had another name for it.
-static void read_old_truth(struct json_object *root, struct result_summary *summary) {
-    static const struct field fields[] = {
-        NUMBER_OF(struct result_summary, "truth_error", omega_truth_rms, ""), FIELD_END};
-    if (mf_json_has(root, fields[0].name))
-        mf_json_fields(root, fields, summary);
-}
-
 /// λ stands in an object of its own, if it is known.
 static void read_length_unit(struct json_object *root, struct result_summary *summary) {
     static const struct field fields[] = {NUMBER(length_unit_nm, "nm"), FIELD_END};
@@ -254,13 +246,178 @@ static enum status read_summary(struct result_summary *summary, const char *file
     read_fields(&root, summary);
     read_length_unit(&root, summary);
     read_units(&root, &summary->units);
-    read_old_truth(&root, summary);
     find_distance(summary);
     if (is_simulation(summary))
         read_simulated_diffusion(&root, summary);
     else if (root.item && !has_distance(&root) && !is_stopped(summary))
         mf_json_fault(&root, NULL, "not the result of a fit: there is no rdf_rmse or other rmse");
     return mf_json_close(document, STATUS_OK);
+}
+
+// Tables ------------------------------------------------------------------------------------------
+
+/// A column of a table that is to be read.
+struct wanted_column {
+    const char *name; ///< in the header, without its unit; NULL: go by the place
+    size_t place;     ///< from 1, if the header has no such name; 0: then it is nan
+};
+
+/// Read the columns that `wanted` says, which learns from the header; others are left alone.
+static enum status read_table(struct result_table *table, const char *folder, const char *name,
+                              struct wanted_column *wanted, size_t count) {
+    CLEARED_BY(mf_data_table_clear) struct data_table from = {0};
+    char file[PATH_SIZE];
+    snprintf(file, sizeof file, "%s/%s", folder, name);
+    TRY(mf_data_table_read_result(&from, file));
+    TRY_ARRAY(table->values, from.rows * count);
+    table->rows = from.rows;
+    table->columns = count;
+    for (size_t k = 0; k < count; k++) {
+        const size_t found = wanted[k].name ? mf_data_table_find(&from, wanted[k].name) : 0;
+        const size_t place = wanted[k].place = found ? found : wanted[k].place;
+        if (place > from.columns)
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: there is no column %zu", file, place);
+        for (size_t row = 0; row < from.rows; row++)
+            table->values[row * count + k] =
+                place > 0 ? from.values[row * from.columns + place - 1] : NAN;
+    }
+    return STATUS_OK;
+}
+
+static bool is_there(const char *folder, const char *name) {
+    char file[PATH_SIZE];
+    snprintf(file, sizeof file, "%s/%s", folder, name);
+    return access(file, F_OK) == 0;
+}
+
+/// That of a simulation is r, g, g_error: a result without a target.
+static enum status read_rdf(struct result_table *table, const char *folder, bool simulated) {
+    struct wanted_column fitted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
+    struct wanted_column counted[] = {{NULL, 1}, {NULL, 0}, {NULL, 0}, {NULL, 2}, {NULL, 3}};
+    return is_there(folder, "rdf.tsv")
+               ? read_table(table, folder, "rdf.tsv", simulated ? counted : fitted, 5)
+               : STATUS_OK;
+}
+
+/// Cells of E of a simulation, which has a column for each r_0: a result without a target.
+static enum status join_cells(struct result_table *cells, const struct result_table *bins,
+                              const struct result_table *value, const struct result_table *error) {
+    cells->columns = 6;
+    TRY_ARRAY(cells->values, cells->columns * value->rows * bins->rows);
+    for (size_t time = 0; time < value->rows; time++)
+        for (size_t bin = 0; bin < bins->rows; bin++) {
+            const size_t at = time * value->columns;
+            double *row = cells->values + cells->columns * cells->rows++;
+            row[0] = value->values[at];
+            row[1] = bins->values[bin];
+            row[2] = row[3] = NAN;
+            row[4] = value->values[at + 1 + bin];
+            row[5] = time < error->rows ? error->values[at + 1 + bin] : NAN;
+        }
+    return STATUS_OK;
+}
+
+static enum status read_simulated_etd(struct result_table *table, const char *folder) {
+    enum status status = STATUS_OK;
+    struct result_table bins = {0}, value = {0}, error = {0};
+    struct wanted_column separation[] = {{NULL, 1}}, *columns = NULL;
+    CHECK(read_table(&bins, folder, "etd_bins.tsv", separation, 1));
+    NEW_ARRAY(columns, bins.rows + 1);
+    for (size_t k = 0; k <= bins.rows; k++)
+        columns[k] = (struct wanted_column){NULL, k + 1};
+    CHECK(read_table(&value, folder, "etd.tsv", columns, bins.rows + 1));
+    CHECK(read_table(&error, folder, "etd_error.tsv", columns, bins.rows + 1));
+    CHECK(join_cells(table, &bins, &value, &error));
+done:
+    mf_memory_free(columns);
+    mf_memory_free(bins.values);
+    mf_memory_free(value.values);
+    mf_memory_free(error.values);
+    return status;
+}
+
+static enum status read_etd(struct result_table *table, const char *folder, bool simulated) {
+    struct wanted_column fitted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3},
+                                     {NULL, 4}, {NULL, 5}, {NULL, 6}};
+    if (simulated)
+        return is_there(folder, "etd.tsv") ? read_simulated_etd(table, folder) : STATUS_OK;
+    return is_there(folder, "etd_cells.tsv") ? read_table(table, folder, "etd_cells.tsv", fitted, 6)
+                                             : STATUS_OK;
+}
+
+static enum status read_vacf(struct result_table *table, const char *folder, bool simulated) {
+    struct wanted_column fitted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3}, {NULL, 4}, {NULL, 5}};
+    struct wanted_column counted[] = {
+        {NULL, 1}, {NULL, 0}, {NULL, 0}, {"vacf", 0}, {"vacf_error", 0}};
+    const char *file = simulated ? "motion.tsv" : "vacf.tsv";
+    return is_there(folder, file) ? read_table(table, folder, file, simulated ? counted : fitted, 5)
+                                  : STATUS_OK;
+}
+
+/// With what was known beside it, which another fit may have looked for.
+static enum status read_potential(struct result_table *table, const char *folder) {
+    enum { PHI = 1, TRUTH = 3, SOUGHT = 4, COLUMNS = 5 };
+    struct wanted_column wanted[COLUMNS] = {
+        {NULL, 1}, {"total", 2}, {"phi_error", 0}, {"truth", 0}, {NULL, 2}};
+    if (!is_there(folder, "potential.tsv"))
+        return STATUS_OK;
+    TRY(read_table(table, folder, "potential.tsv", wanted, COLUMNS));
+    table->columns = COLUMNS - 1;
+    for (size_t k = 0; k < table->rows; k++) {
+        const double *from = table->values + k * COLUMNS;
+        double *to = table->values + k * table->columns;
+        const double row[] = {from[0], from[PHI], from[2], from[TRUTH] + from[PHI] - from[SOUGHT]};
+        memcpy(to, row, sizeof row);
+    }
+    return STATUS_OK;
+}
+
+/// A friction weight without a column of errors was not fitted.
+static enum status read_omega(struct result_table *table, const char *folder) {
+    struct wanted_column wanted[] = {{NULL, 1}, {NULL, 2}, {"omega_error", 0}, {"truth", 0}};
+    if (!is_there(folder, "omega.tsv"))
+        return STATUS_OK;
+    TRY(read_table(table, folder, "omega.tsv", wanted, 4));
+    if (wanted[2].place == 0) {
+        mf_memory_free(table->values);
+        *table = (struct result_table){0};
+    }
+    return STATUS_OK;
+}
+
+static double seconds_at(const struct result_table *timing, double iteration) {
+    for (size_t row = 0; row < timing->rows; row++)
+        if (timing->values[2 * row] == iteration)
+            return timing->values[2 * row + 1];
+    return NAN;
+}
+
+/// history.tsv with the seconds of timing.tsv.
+static enum status read_course(struct result_table *table, const char *folder) {
+    enum { SECONDS = 3 };
+    enum status status = STATUS_OK;
+    struct result_table timing = {0};
+    struct wanted_column wanted[] = {{NULL, 1}, {NULL, 2}, {NULL, 3},
+                                     {NULL, 0}, {NULL, 4}, {NULL, 5}};
+    struct wanted_column times[] = {{NULL, 1}, {NULL, 2}};
+    CHECK(read_table(table, folder, "history.tsv", wanted, 6));
+    CHECK(read_table(&timing, folder, "timing.tsv", times, 2));
+    for (size_t row = 0; row < table->rows; row++) {
+        double *values = table->values + row * table->columns;
+        values[SECONDS] = seconds_at(&timing, values[0]);
+    }
+done:
+    mf_memory_free(timing.values);
+    return status;
+}
+
+static enum status read_tables(struct result *result, const char *folder, bool simulated) {
+    TRY(read_rdf(&result->rdf, folder, simulated));
+    TRY(read_etd(&result->etd, folder, simulated));
+    TRY(read_vacf(&result->vacf, folder, simulated));
+    TRY(read_potential(&result->potential, folder));
+    TRY(read_omega(&result->omega, folder));
+    return simulated ? STATUS_OK : read_course(&result->course, folder);
 }
 
 enum status mf_result_read(struct result *result, const char *folder) {
@@ -270,7 +427,7 @@ enum status mf_result_read(struct result *result, const char *folder) {
     *result = (struct result){0};
     CHECK(check_folder(folder, summary));
     CHECK(read_summary(&result->summary, summary));
-    CHECK(mf_result_tables_read(result, folder, is_simulation(&result->summary)));
+    CHECK(read_tables(result, folder, is_simulation(&result->summary)));
 done:
     if (status != STATUS_OK)
         mf_result_clear(result);

@@ -13,7 +13,7 @@
 struct result_summary {
     char status[FIELD_TEXT_SIZE], method[FIELD_TEXT_SIZE], version[FIELD_TEXT_SIZE];
     double seconds, threads, iterations, evaluations, engine_steps;
-    double error_over_noise; ///< of all targets: see report/result_distance.h
+    double error_over_noise; ///< of all targets, in which 1 is what statistics leave
     char worst[64];          ///< the target that is farthest off by its noise, and how far
     struct result_distance {
         double rmse, rmse_error, noise;

@@ -113,33 +113,6 @@ static char *snapshot(const char *folder) {
     return strdup(text);
 }
 
-/// A folder as version 0.1.0 left it: its names of what is called after omega now.
-static void test_compare_and_plot_open_folders_of_version_0_1_0(void **state) {
-    small_inputs_need_gnuplot();
-    small_inputs_write(*state, "run.json", small_inputs_run, NULL, NULL);
-    small_inputs_write(*state, "target.tsv", small_inputs_target, NULL, NULL);
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", "old", "--quiet");
-    assert_in_range(result.code, 0, 1);
-    char *summary = temporary_folder_read("old/summary.json");
-    small_inputs_write(*state, "old/summary.json", summary, "\"method\"",
-                       "\"truth_error\": 0.0625, \"method\"");
-    free(summary);
-    small_inputs_write(*state, "old/omega.tsv",
-                       "# r[lambda]\tomega[sqrt(mu/tau)]\tomega_error[sqrt(mu/tau)]\n"
-                       "0.1\t3\t0.1\n0.9\t1\t0.1\n",
-                       NULL, NULL);
-    small_inputs_write(*state, "old/weight_history.tsv",
-                       "# r[lambda]\t1[sqrt(mu/tau)]\n0.1\t3\n0.9\t1\n", NULL, NULL);
-    RUN_PROGRAM(&result, "compare", "old", "old", "-o", "both");
-    run_program_assert_code(&result, 0);
-    assert_contains(result.out, "truth(omega)");
-    assert_contains(result.out, "0.0625");
-    assert_true(temporary_folder_exists("both/omega_compare.tsv"));
-    RUN_PROGRAM(&result, "plot", "old");
-    run_program_assert_code(&result, 0);
-    assert_true(temporary_folder_exists("old/figures/omega.png"));
-}
-
 static void test_compare_leaves_a_run_in_its_own_folder_alone(void **state) {
     small_inputs_need_gnuplot();
     simulate(*state, "cold", "1");
@@ -194,8 +167,6 @@ static void test_compare_refuses_results_of_different_units_of_length(void **sta
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_compare_puts_simulations_side_by_side,
-                                        small_inputs_enter, small_inputs_leave),
-        cmocka_unit_test_setup_teardown(test_compare_and_plot_open_folders_of_version_0_1_0,
                                         small_inputs_enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_compare_leaves_a_run_in_its_own_folder_alone,
                                         small_inputs_enter, small_inputs_leave),
