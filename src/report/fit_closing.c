@@ -158,10 +158,10 @@ void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result 
                             const char *noise, char text[FIT_VERDICT_SIZE]) {
     const struct farthest farthest = find_farthest(fit, result->verification);
     const bool agrees = farthest.agreement && verify_agreement_holds(farthest.agreement);
-    const char *word = noise[0]          ? "undetermined"
-                       : agrees          ? "success"
-                       : result->settled ? "converged"
-                                         : "finished";
+    const char *word = noise[0]                 ? "undetermined"
+                       : agrees                 ? "success"
+                       : result->step.converged ? "converged"
+                                                : "finished";
     char off[FARTHEST_SIZE] = "";
     if (farthest.agreement)
         describe_farthest(&farthest, off);
@@ -181,7 +181,8 @@ void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result 
 static void print_verdict(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result) {
     char noise[INVERSE_REASON_SIZE] = "", text[FIT_VERDICT_SIZE];
-    mf_fit_closing_is_noise(unknowns, result->curve, result->curve_error, &fit->scene.units, noise);
+    mf_fit_closing_is_noise(unknowns, result->step.curve, result->step.curve_error,
+                            &fit->scene.units, noise);
     mf_fit_closing_verdict(fit, result, noise, text);
     mf_progress_print(to, "result: %s", text);
 }
@@ -201,12 +202,12 @@ static void print_bulk(struct progress *to, const struct fit_file *fit,
     const struct thermodynamics_summary *found = &result->verification->thermodynamics;
     const enum target_kind kind = inverse_problem_bulk(&fit->problem);
     const char *name = mf_targets_name((int)kind), *of = mf_observable_kind((int)kind).target->unit;
-    const double open = result->ramp.bulk_open, factor = mf_units_factor(units, of);
+    const double open = result->step.ramp.bulk_open, factor = mf_units_factor(units, of);
     const double value = kind == TARGET_DENSITY ? found->density : found->pressure;
     const double error = kind == TARGET_DENSITY ? found->density_error : found->pressure_error;
     char unit[UNITS_NAME_SIZE], range[NUMBER_TEXT_SIZE];
     // Of several states that of the first is known, and together they leave less open.
-    if (fit->others > 0 || !(result->ramp.error > 0) || !(open > error) ||
+    if (fit->others > 0 || !(result->step.ramp.error > 0) || !(open > error) ||
         targets_ask(&fit->problem.compared, kind))
         return;
     print_open(factor * value, factor * hypot(open, error), range);
@@ -214,13 +215,13 @@ static void print_bulk(struct progress *to, const struct fit_file *fit,
     const double end =
         mf_units_factor(units, "lambda") * mf_rdf_bins_range(&fit->problem.targets.bins);
     mf_units_suffix(units, "lambda", length);
-    if (result->ramp.bulk_range > sqrt(0.5) * open)
+    if (result->step.ramp.bulk_range > sqrt(0.5) * open)
         snprintf(
             law, sizeof law,
             ", most of it by what the law may do beyond %.4g%s, which a longer \"cutoff\" of the "
             "target tells",
             end, length);
-    else if (result->ramp.bulk_samples > sqrt(0.5) * open)
+    else if (result->step.ramp.bulk_samples > sqrt(0.5) * open)
         snprintf(law, sizeof law,
                  ", most of it by the noise of the fit's own samples, of which a smaller "
                  "\"precision\" takes more");
@@ -250,10 +251,10 @@ static void print_friction(struct progress *to, const struct fit_file *fit,
     const struct units *units = &fit->scene.units;
     char unit[UNITS_NAME_SIZE], name[UNKNOWNS_NAME_SIZE];
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        if (!unknown_is_omega(kind) || result->curve[kind] == NULL)
+        if (!unknown_is_omega(kind) || result->step.curve[kind] == NULL)
             continue;
         const struct curve_knowledge known = mf_fit_closing_knowledge(
-            unknowns, kind, result->curve[kind], result->curve_error[kind]);
+            unknowns, kind, result->step.curve[kind], result->step.curve_error[kind]);
         const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
         mf_unknowns_kind_name(unknowns, kind, name);
         if (isfinite(known.seen) && known.error > well * known.rms)
@@ -269,7 +270,7 @@ void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           const char *folder) {
     print_verdict(to, fit, unknowns, result);
     print_bulk(to, fit, result);
-    print_slowest(to, &result->slowest);
+    print_slowest(to, &result->step.slowest);
     print_friction(to, fit, unknowns, result);
     if (result->status == STATUS_OK && mf_fit_engine_knows_more(fit))
         mf_progress_print(to,

@@ -47,7 +47,7 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
     const size_t points = unknowns->potential.bins + 1;
     const size_t first = mf_potential_grid_block(&unknowns->potential, pair);
     const double *r = unknowns->potential.r + first;
-    const double *phi = result->curve[UNKNOWN_POTENTIAL] + first;
+    const double *phi = result->step.curve[UNKNOWN_POTENTIAL] + first;
     OWNED double *force = NULL, *truth = NULL, *total = NULL;
     size_t count = 0;
     char path[OUTPUT_PATH_SIZE];
@@ -64,11 +64,11 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
         {"r[lambda]", r, "%.17g"},
         {"phi[k_B.T_0]", phi, "%.17g"},
         {"force[k_B.T_0/lambda]", force, NULL},
-        {"phi_error[k_B.T_0]", result->curve_error[UNKNOWN_POTENTIAL] + first, "%.3g"}};
+        {"phi_error[k_B.T_0]", result->step.curve_error[UNKNOWN_POTENTIAL] + first, "%.3g"}};
     count = 4;
-    if (result->ramp.error > 0)
+    if (result->step.ramp.error > 0)
         columns[count++] = (struct data_column){"phi_error_without_ramp[k_B.T_0]",
-                                                result->without_ramp + first, "%.3g"};
+                                                result->step.without_ramp + first, "%.3g"};
     if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
         columns[count++] = (struct data_column){"truth[k_B.T_0]", truth, "%.8g"};
     if (inverse_law_curve(&fit->problem.known, (int)pair))
@@ -87,7 +87,7 @@ static enum status write_potentials(const struct fit_file *fit, const struct unk
                                     const struct fit_result *result,
                                     const struct run_folder *folder) {
     CLEARED_BY(mf_table_clear) struct table table = {0};
-    TRY(mf_potential_grid_table_sought(&unknowns->potential, result->curve[UNKNOWN_POTENTIAL],
+    TRY(mf_potential_grid_table_sought(&unknowns->potential, result->step.curve[UNKNOWN_POTENTIAL],
                                        &table));
     for (size_t pair = 0; pair < unknowns->potential.pairs; pair++)
         TRY(write_potential(fit, unknowns, result, &table, pair, folder));
@@ -105,8 +105,8 @@ static enum status write_omega(const struct fit_file *fit, const struct unknowns
     char path[OUTPUT_PATH_SIZE];
     struct data_column columns[4] = {
         {"r[lambda]", r, "%.17g"},
-        {"omega[sqrt(mu/tau)]", result->curve[kind], "%.17g"},
-        {"omega_error[sqrt(mu/tau)]", result->curve_error[kind], "%.3g"}};
+        {"omega[sqrt(mu/tau)]", result->step.curve[kind], "%.17g"},
+        {"omega_error[sqrt(mu/tau)]", result->step.curve_error[kind], "%.3g"}};
     size_t count = 3;
     if (truth_known)
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
@@ -124,7 +124,7 @@ static enum status write_flat(const struct fit_file *fit, enum unknown_kind kind
                               const struct run_folder *folder) {
     const size_t all = mf_unknowns_points(unknowns, kind);
     const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
-    const double *flat = result->curve_flat[kind];
+    const double *flat = result->step.curve_flat[kind];
     char path[OUTPUT_PATH_SIZE];
     if (flat == NULL || isnan(flat[all - 1]))
         return STATUS_OK;
@@ -154,8 +154,8 @@ static enum status write_group(const struct fit_file *fit, const struct unknowns
     const struct data_column columns[] = {
         {mf_unknowns_heading(unknowns, UNKNOWN_BONDED, group),
          mf_unknowns_r(unknowns, UNKNOWN_BONDED) + part.first, "%.17g"},
-        {"energy[k_B.T_0]", result->curve[UNKNOWN_BONDED] + part.first, "%.17g"},
-        {"energy_error[k_B.T_0]", result->curve_error[UNKNOWN_BONDED] + part.first, "%.3g"}};
+        {"energy[k_B.T_0]", result->step.curve[UNKNOWN_BONDED] + part.first, "%.17g"},
+        {"energy_error[k_B.T_0]", result->step.curve_error[UNKNOWN_BONDED] + part.first, "%.3g"}};
     curve_file(unknowns, UNKNOWN_BONDED, group, ".tsv", folder, path);
     return mf_data_table_write_beside(path, &fit->scene.units, columns, beside, 3, part.points);
 }
@@ -163,14 +163,15 @@ static enum status write_group(const struct fit_file *fit, const struct unknowns
 enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknowns *unknowns,
                                  const struct fit_result *result, const struct run_folder *folder) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        for (size_t n = 0; result->curve[kind] && n < mf_unknowns_curve_count(unknowns, kind); n++)
+        for (size_t n = 0; result->step.curve[kind] && n < mf_unknowns_curve_count(unknowns, kind);
+             n++)
             TRY(write_flat(fit, kind, n, unknowns, result, folder));
-    if (result->curve[UNKNOWN_POTENTIAL])
+    if (result->step.curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, unknowns, result, folder));
-    for (size_t n = 0; result->curve[UNKNOWN_BONDED] && n < unknowns->potential.groups; n++)
+    for (size_t n = 0; result->step.curve[UNKNOWN_BONDED] && n < unknowns->potential.groups; n++)
         TRY(write_group(fit, unknowns, result, n, folder));
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (unknown_is_omega(kind) && result->curve[kind])
+        if (unknown_is_omega(kind) && result->step.curve[kind])
             TRY(write_omega(fit, unknowns, result, kind, folder));
     return STATUS_OK;
 }
@@ -307,4 +308,24 @@ enum status mf_fit_reserve_curves(const struct fit_file *fit, const struct unkno
                 TRY(reserve(folder, "", name, endings[k]));
         }
     return STATUS_OK;
+}
+
+bool mf_fit_damping_ask(struct fit_dampings *changes, uint64_t iteration, double *damping,
+                        struct progress *progress) {
+    double wanted;
+    if (damping == NULL || !mf_progress_ask_damping(progress, &wanted) || wanted == *damping)
+        return false;
+    const bool again =
+        changes->count > 0 && changes->change[changes->count - 1].iteration == iteration;
+    if (changes->count == FIT_DAMPINGS_MAX && !again) {
+        mf_progress_print(progress, "mesofit: warning: the damping was changed %d times; it stays",
+                          FIT_DAMPINGS_MAX);
+        return false;
+    }
+    changes->count += !again;
+    changes->change[changes->count - 1] = (struct fit_damping){iteration, wanted};
+    *damping = wanted;
+    mf_progress_print(progress, "from iteration %llu on: damping %.6g",
+                      (unsigned long long)iteration, wanted);
+    return true;
 }

@@ -12,24 +12,16 @@
 
 /// The result of a fit so far.
 struct fit_result {
-    enum status status; ///< OK: converged, or finished; UNCONVERGED; INTERRUPTED
-    bool settled;       ///< whether OK says that it has converged
-    uint64_t iterations, evaluations, engine_steps;
-    double seconds;                      ///< of the fit, without its verification
-    const double *curve[UNKNOWNS];       ///< on the unknown's points; NULL: not fitted
-    const double *curve_error[UNKNOWNS]; ///< may hold NaN: not known
-    const double *curve_flat[UNKNOWNS];  ///< shape [INVERSE_FLAT, points]; may hold NaN
-    const double *first[UNKNOWNS];       ///< the curve of the first iteration; NULL: none yet
-    double first_error, error;           ///< of the fit, as its method measured them
-    const double *without_ramp;          ///< inverse_step.without_ramp; may hold NaN
-    struct inverse_ramp ramp;            ///< error 0: not known
-    struct inverse_slowest slowest;
-    const struct inverse_parameter *parameter; ///< shape [INVERSE_PARAMETERS], of a formula
-    const struct inverse_parameter *number;    ///< shape [problem.numbers]
-    const char *formula;                       ///< of the curve, or ""
-    const char *reason;                        ///< why it has not converged, or settled, or ""
-    const struct fit_dampings *changes;        ///< by a person, while it ran
-    const struct verification *verification;   ///< of each state; NULL if there was none
+    enum status status; ///< OK: converged, or exhausted; UNCONVERGED; INTERRUPTED
+    /// The last one. Its curves are there where they are fitted, their errors may hold NaN, not
+    /// known, and its formula may be "".
+    struct inverse_step step;
+    double seconds;                          ///< of the fit, without its verification
+    const double *first[UNKNOWNS];           ///< the curve of the first iteration; NULL: none yet
+    double first_error;                      ///< of that, as the method measured it
+    const char *reason;                      ///< why it has not converged, or settled, or ""
+    const struct fit_dampings *changes;      ///< by a person, while it ran
+    const struct verification *verification; ///< of each state; NULL if there was none
 };
 
 /// potential.tsv and omega.tsv, what of them was fitted.
@@ -47,14 +39,6 @@ enum status mf_fit_output_observables(const struct fit_file *fit,
 enum status mf_fit_output_summary(const struct fit_file *fit, const struct unknowns *unknowns,
                                   const struct fit_result *result,
                                   const struct run_folder *folder) MUST_USE;
-
-/// How far the fitted potential of a pair type is from the known true one, over the bins with a
-/// target above 0.1.
-struct fit_truth {
-    double rms;              ///< of Φ − Φ_true [k_B T_0]
-    double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
-    double rms_without_ramp; ///< of what is left
-};
 
 /// The tables of the verification of one state, as mf_fit_output_observables writes them.
 /// @param[in] inside  the state's folder in that of the fit, with / at its end, or ""

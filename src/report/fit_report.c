@@ -128,16 +128,16 @@ static void print_changes(struct progress *to, const struct units *units,
     const double length = mf_units_factor(units, "lambda");
     if (isfinite(result->first_error))
         mf_progress_print(to, "error of the fit: %.4g at first, %.4g at the end",
-                          result->first_error, result->error);
-    else if (isfinite(result->error))
-        mf_progress_print(to, "error of the fit: %.4g at the end", result->error);
+                          result->first_error, result->step.error);
+    else if (isfinite(result->step.error))
+        mf_progress_print(to, "error of the fit: %.4g at the end", result->step.error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {
             char name[UNKNOWNS_NAME_SIZE], well[128] = "";
             char energies[UNITS_NAME_SIZE], lengths[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE];
-            const struct fit_change change =
-                mf_fit_change_find(unknowns, kind, n, result->first[kind], result->curve[kind]);
+            const struct fit_change change = mf_fit_change_find(
+                unknowns, kind, n, result->first[kind], result->step.curve[kind]);
             mf_unknowns_curve_name(unknowns, kind, n, name);
             if (kind == UNKNOWN_POTENTIAL && change.well < 0)
                 snprintf(well, sizeof well, " well %.3f %s at %.3g %s (%.3f at %.3g at first),",
@@ -148,7 +148,7 @@ static void print_changes(struct progress *to, const struct units *units,
             mf_units_suffix(units, mf_unknowns_unit(kind), unit);
             if (unknown_is_omega(kind)) {
                 const struct curve_knowledge known = mf_fit_closing_knowledge(
-                    unknowns, kind, result->curve[kind], result->curve_error[kind]);
+                    unknowns, kind, result->step.curve[kind], result->step.curve_error[kind]);
                 if (isfinite(known.seen))
                     snprintf(well, sizeof well, " %.2g%.16s rms, error %.2g,", factor * known.rms,
                              unit, factor * known.error);
@@ -370,13 +370,13 @@ static void print_state(struct progress *to, const struct fit_file *fit,
 
 /// "converged after 8 iterations, 111 s".
 static void print_end(struct progress *to, const struct fit_result *result) {
-    const bool exhausted = result->status == STATUS_OK && !result->settled;
+    const bool exhausted = result->status == STATUS_OK && !result->step.converged;
     mf_progress_print(to, "%s after %llu iterations, %.1f s%s%s",
                       exhausted                     ? "finished"
                       : result->status == STATUS_OK ? "converged"
                                                     : "not converged",
-                      (unsigned long long)result->iterations, result->seconds,
-                      exhausted ? ": " : "", exhausted ? result->reason : "");
+                      result->step.iteration + 1ULL, result->seconds, exhausted ? ": " : "",
+                      exhausted ? result->reason : "");
 }
 
 void mf_fit_report_print(struct progress *to, const struct fit_file *fit,
@@ -384,10 +384,10 @@ void mf_fit_report_print(struct progress *to, const struct fit_file *fit,
     const struct units *units = &fit->scene.units;
     print_end(to, result);
     print_changes(to, units, unknowns, result);
-    if (result->formula[0])
-        mf_progress_print(to, "formula: %s", result->formula);
-    print_parameters(to, fit, result->parameter);
-    print_numbers(to, fit, result->number);
+    if (result->step.formula[0])
+        mf_progress_print(to, "formula: %s", result->step.formula);
+    print_parameters(to, fit, result->step.parameter);
+    print_numbers(to, fit, result->step.number);
     for (size_t s = 0; s <= fit->others; s++)
         print_state(to, s == 0 ? fit : &fit->other[s - 1], &result->verification[s]);
 }

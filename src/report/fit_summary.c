@@ -1,38 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "report/fit_output.h"
-
 #include "mesofit.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
-#include "report/fit_integrals.h"
+#include "report/fit_output.h"
 #include "report/fit_report.h"
 #include "report/fit_verification.h"
 
 #include <math.h>
+#include <stdio.h>
 
-// What a person has changed -----------------------------------------------------------------------
-
-bool mf_fit_damping_ask(struct fit_dampings *changes, uint64_t iteration, double *damping,
-                        struct progress *progress) {
-    double wanted;
-    if (damping == NULL || !mf_progress_ask_damping(progress, &wanted) || wanted == *damping)
-        return false;
-    const bool again =
-        changes->count > 0 && changes->change[changes->count - 1].iteration == iteration;
-    if (changes->count == FIT_DAMPINGS_MAX && !again) {
-        mf_progress_print(progress, "mesofit: warning: the damping was changed %d times; it stays",
-                          FIT_DAMPINGS_MAX);
-        return false;
-    }
-    changes->count += !again;
-    changes->change[changes->count - 1] = (struct fit_damping){iteration, wanted};
-    *damping = wanted;
-    mf_progress_print(progress, "from iteration %llu on: damping %.6g",
-                      (unsigned long long)iteration, wanted);
-    return true;
-}
-
-/// Put "changed", a list, if there are any.
+/// Put "changed", what a person has, a list, if there is anything.
 static void write_dampings(const struct fit_dampings *changes, struct json_writer *writer) {
     if (changes->count == 0)
         return;
@@ -46,7 +24,13 @@ static void write_dampings(const struct fit_dampings *changes, struct json_write
     mf_json_end(writer);
 }
 
-// The summary -------------------------------------------------------------------------------------
+/// How far the fitted potential of a pair type is from the known true one, over the bins with a
+/// target above 0.1.
+struct fit_truth {
+    double rms;              ///< of Φ − Φ_true [k_B T_0]
+    double ramp;             ///< A of the ramp A(1 − r/r_c) that explains most of it [k_B T_0]
+    double rms_without_ramp; ///< of what is left
+};
 
 static struct fit_truth find_truth(const struct fit_file *fit, const struct unknowns *unknowns,
                                    const double *phi, size_t pair) {
@@ -108,6 +92,54 @@ static double known_error(double error) {
     return error > 0 ? error : NAN;
 }
 
+/// Integrals of Kirkwood and Buff, those of the target and of the result.
+static void write_integrals(struct json_writer *writer, const struct fit_file *fit,
+                            const struct verification *v) {
+    const int kind = mf_kirkwood_buff_kind();
+    const struct composition *components = &target_files_kirkwood_buff(&fit->files)->components;
+    const struct target *target = &fit->problem.compared.target[kind];
+    for (size_t pair = 0; pair < target->count; pair++) {
+        mf_kirkwood_buff_write(writer, "target_kirkwood_buff", components, pair,
+                               target->value[pair], target->error[pair]);
+        mf_kirkwood_buff_write(writer, "kirkwood_buff", components, pair,
+                               v->observed.value[kind][pair], v->observed.error[kind][pair]);
+    }
+}
+
+/// Kirkwood and Buff's integral of a g(r), and S(0) with it, at a density, or that of the scene.
+static void write_integral(struct json_writer *writer, const struct fit_file *fit, const char *of,
+                           const double *g, const double *error, const double *density) {
+    const double count = (double)fit->scene.setup.placement.count;
+    const struct box box = density ? mf_box_cube(count / *density) : fit->scene.setup.box;
+    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
+        target_pairs_bins(target_files_rdf(&fit->files)), g, error, &box, (size_t)count, 0);
+    const double value[] = {found.integral, known_error(found.integral_error),
+                            found.compressibility, known_error(found.compressibility_error)};
+    static const char *const name[] = {"kirkwood_buff", "kirkwood_buff_error", "compressibility",
+                                       "compressibility_error"};
+    for (int k = 0; k < 4; k++) {
+        char key[40];
+        snprintf(key, sizeof key, "%s%s", of, name[k]);
+        write_quantity(writer, key, k < 2 ? "lambda^d" : "1", value[k]);
+    }
+}
+
+/// Those of the g(r) of target and result, in three dimensions and of beads that are alike: each at
+/// its density, where that is a target, else at that of the scene.
+static void write_compressibility(struct json_writer *writer, const struct fit_file *fit,
+                                  const struct verification *v) {
+    const struct target *density = &fit->problem.compared.target[TARGET_DENSITY];
+    const bool held = density->count == 0; // by the box
+    if (!fit->files.given[TARGET_RDF] || fit->scene.setup.box.dimensions != 3 ||
+        composition_is_mixed(&fit->scene.setup.composition) ||
+        scene_has_molecules(&fit->scene.molecules))
+        return;
+    write_integral(writer, fit, "target_", target_files_rdf(&fit->files)->g,
+                   target_files_rdf(&fit->files)->error, held ? NULL : density->value);
+    write_integral(writer, fit, "", v->observed.value[TARGET_RDF], v->observed.error[TARGET_RDF],
+                   held ? NULL : v->observed.value[TARGET_DENSITY]);
+}
+
 /// "etd_rmse", "etd_rmse_error", "etd_noise", and so on for every target.
 static void write_distances(struct json_writer *writer, const struct fit_file *fit,
                             const struct verification *v) {
@@ -150,11 +182,11 @@ static void write_diffusion(struct json_writer *writer, const struct fit_file *f
 static void write_flat(struct json_writer *writer, enum unknown_kind kind,
                        const struct unknowns *unknowns, const struct fit_result *result) {
     const size_t points = mf_unknowns_points(unknowns, kind);
-    const double *r = mf_unknowns_r(unknowns, kind), *flat = result->curve_flat[kind];
+    const double *r = mf_unknowns_r(unknowns, kind), *flat = result->step.curve_flat[kind];
     double all = 0, widest = 0, ramps = 0, product = 0;
     char key[UNKNOWNS_NAME_SIZE + 16], name[UNKNOWNS_NAME_SIZE];
     for (size_t k = 0; flat && k < points; k++) {
-        const double ramp = 1 - r[k] / r[points - 1], error = result->curve_error[kind][k];
+        const double ramp = 1 - r[k] / r[points - 1], error = result->step.curve_error[kind][k];
         if (!isfinite(flat[k]) || !isfinite(error))
             continue;
         all += error * error;
@@ -226,15 +258,15 @@ static void write_parameters(struct json_writer *writer, const struct fit_file *
         mf_json_begin(writer, mf_inverse_unknown_names[UNKNOWN_OMEGA]);
     for (int k = 0; formula && k < INVERSE_PARAMETERS; k++)
         write_parameter(writer, mf_inverse_fixed_fields[k].name, mf_inverse_fixed_fields[k].unit,
-                        &result->parameter[k], !isnan(p->fixed[k]),
-                        mf_parametrisation_parameter_bound(p, k, result->parameter[k].value),
+                        &result->step.parameter[k], !isnan(p->fixed[k]),
+                        mf_parametrisation_parameter_bound(p, k, result->step.parameter[k].value),
                         false);
     if (formula)
         mf_json_end(writer);
     for (size_t n = 0; n < fit->numbers; n++)
-        write_parameter(writer, fit->number[n].name, fit->number[n].unit, &result->number[n], false,
-                        mf_numbers_bound(&fit->number[n], result->number[n].value),
-                        mf_numbers_undetermined(&fit->number[n], &result->number[n]));
+        write_parameter(writer, fit->number[n].name, fit->number[n].unit, &result->step.number[n],
+                        false, mf_numbers_bound(&fit->number[n], result->step.number[n].value),
+                        mf_numbers_undetermined(&fit->number[n], &result->step.number[n]));
     mf_json_end(writer);
 }
 
@@ -248,8 +280,8 @@ static void write_start(struct json_writer *writer, const struct unknowns *unkno
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {
-            const struct fit_change change =
-                mf_fit_change_find(unknowns, kind, n, result->first[kind], result->curve[kind]);
+            const struct fit_change change = mf_fit_change_find(
+                unknowns, kind, n, result->first[kind], result->step.curve[kind]);
             mf_unknowns_curve_name(unknowns, kind, n, name);
             mf_json_begin(writer, name);
             write_quantity(writer, "change", mf_unknowns_unit(kind), change.rms);
@@ -280,13 +312,13 @@ static void write_potential_truth(struct json_writer *writer, const struct fit_f
 
 static void write_truth(struct json_writer *writer, const struct fit_file *fit,
                         const struct unknowns *unknowns, const struct fit_result *result) {
-    const double *phi = result->curve[UNKNOWN_POTENTIAL];
+    const double *phi = result->step.curve[UNKNOWN_POTENTIAL];
     char name[UNKNOWNS_NAME_SIZE], key[UNKNOWNS_NAME_SIZE + 16];
     for (size_t pair = 0; phi && pair < unknowns->potential.pairs; pair++)
         if (mf_scene_law_curve(&fit->unknown[UNKNOWN_POTENTIAL].truth, (int)pair))
             write_potential_truth(writer, fit, unknowns, phi, pair);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        const double *omega = result->curve[kind];
+        const double *omega = result->step.curve[kind];
         if (!unknown_is_omega(kind) || omega == NULL || fit->unknown[kind].truth.curves == 0)
             continue;
         mf_unknowns_kind_name(unknowns, kind, name);
@@ -325,9 +357,9 @@ static void write_verification(struct json_writer *writer, const struct fit_file
     write_distances(writer, fit, v);
     write_diffusion(writer, fit, v);
     if (targets_ask(&fit->problem.compared, mf_kirkwood_buff_kind()))
-        mf_fit_integrals_write(writer, fit, v);
+        write_integrals(writer, fit, v);
     else
-        mf_fit_integrals_write_compressibility(writer, fit, v);
+        write_compressibility(writer, fit, v);
     mf_json_put_measured(writer, "temperature", "T_0", t->temperature,
                          known_error(t->temperature_error));
     write_quantity(writer, "temperature_configurational", "T_0", t->temperature_configurational);
@@ -371,7 +403,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     mf_units_write_summary(&fit->scene.units, writer);
     mf_json_write_text(writer, "status",
                        result->status != STATUS_OK ? mf_status_name(result->status)
-                       : result->settled           ? "converged"
+                       : result->step.converged    ? "converged"
                                                    : "finished");
     if (result->reason[0])
         mf_json_write_text(writer, "reason", result->reason);
@@ -381,12 +413,12 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
         mf_json_write_text(writer, "friction", "chosen");
     mf_json_write_number(writer, "seconds", result->seconds);
     mf_json_write_number(writer, "threads", fit->problem.threads);
-    mf_json_write_number(writer, "iterations", (double)result->iterations);
-    mf_json_write_number(writer, "evaluations", (double)result->evaluations);
-    mf_json_write_number(writer, "engine_steps", (double)result->engine_steps);
-    write_known(writer, "error", result->error);
-    if (result->formula[0])
-        mf_json_write_text(writer, "formula", result->formula);
+    mf_json_write_number(writer, "iterations", result->step.iteration + 1.0);
+    mf_json_write_number(writer, "evaluations", (double)result->step.evaluations);
+    mf_json_write_number(writer, "engine_steps", (double)result->step.engine_steps);
+    write_known(writer, "error", result->step.error);
+    if (result->step.formula[0])
+        mf_json_write_text(writer, "formula", result->step.formula);
     if (result->verification)
         write_verification(writer, fit, result->verification);
     if (result->verification)
@@ -394,10 +426,10 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
     write_normalisation(writer, fit);
     write_truth(writer, fit, unknowns, result);
     for (int kind = 0; kind < UNKNOWNS; kind++)
-        if (result->curve[kind])
+        if (result->step.curve[kind])
             write_flat(writer, kind, unknowns, result);
-    write_ramp(writer, &result->ramp, inverse_problem_bulk(&fit->problem));
-    write_slowest(writer, &result->slowest);
+    write_ramp(writer, &result->step.ramp, inverse_problem_bulk(&fit->problem));
+    write_slowest(writer, &result->step.slowest);
     write_parameters(writer, fit, result);
     write_start(writer, unknowns, result);
     write_dampings(result->changes, writer);

@@ -14,7 +14,6 @@
 #include "report/history.h"
 #include "report/progress.h"
 #include "work/fit_checkpoint.h"
-#include "work/fit_engine.h"
 #include "work/fit_tasks.h"
 #include "work/fit_print.h"
 #include "work/fit_verify.h"
@@ -39,17 +38,11 @@ struct run {
     double *curve[UNKNOWNS], *curve_error[UNKNOWNS]; ///< shape [mf_unknowns_points]
     double *curve_flat[UNKNOWNS];                    ///< shape [INVERSE_FLAT, mf_unknowns_points]
     double *without_ramp;                            ///< shape [mf_unknowns_points of Φ]
-    struct standing {
-        bool finished, converged, exhausted; ///< as in struct inverse_step
-        uint64_t iterations, evaluations, engine_steps;
-        struct fit_accuracy accuracy;
+    struct kept {
+        struct inverse_step step; ///< without its curves, which stand above
         struct history_time time;
-        struct inverse_ramp ramp;
-        struct inverse_slowest slowest;
-        struct inverse_parameter parameter[INVERSE_PARAMETERS], number[INVERSE_MAX_NUMBERS];
-        char reason[INVERSE_REASON_SIZE];
         char formula[FIELD_TEXT_SIZE]; ///< or ""
-    } standing;
+    } kept;
     struct fit_dampings changes;
 };
 
@@ -65,7 +58,7 @@ static enum status save(struct run *run) {
         return STATUS_OK;
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     const double begun = mf_progress_seconds(&run->progress);
-    run->standing.time = time_of(run);
+    run->kept.time = time_of(run);
     const enum status status = mf_fit_checkpoint_save(&run->checkpoint, path, run->digest);
     mf_checkpoint_pace_saved(&run->pace, begun, mf_progress_seconds(&run->progress));
     return status;
@@ -75,9 +68,9 @@ static enum status load(struct run *run) {
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
     TRY(mf_fit_checkpoint_load(&run->checkpoint, path, run->digest));
-    run->seconds_before = run->standing.time.seconds;
-    run->processor_origin = clock_process_seconds() - run->standing.time.processor;
-    run->spent_origin = mf_spent_less(mf_spent(), run->standing.time.spent);
+    run->seconds_before = run->kept.time.seconds;
+    run->processor_origin = clock_process_seconds() - run->kept.time.processor;
+    run->spent_origin = mf_spent_less(mf_spent(), run->kept.time.spent);
     return STATUS_OK;
 }
 
@@ -96,7 +89,7 @@ static void list_state(struct run *run) {
     struct fit_checkpoint *to = &run->checkpoint;
     *to = (struct fit_checkpoint){
         .method = run->fit.method, .state = run->state, .history = &run->history};
-    mf_fit_checkpoint_add(to, &run->standing, sizeof run->standing);
+    mf_fit_checkpoint_add(to, &run->kept, sizeof run->kept);
     mf_fit_checkpoint_add(to, &run->changes, sizeof run->changes);
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         const size_t bytes = mf_unknowns_points(&run->unknowns, kind) * sizeof(double);
@@ -202,27 +195,18 @@ static void report_verification(void *context, const struct inverse_progress *p)
 
 /// What the tables and the summary say at this point.
 static struct fit_result result_so_far(const struct run *run, enum status status) {
-    const struct standing *s = &run->standing;
     struct fit_result result = {.status = status,
-                                .iterations = s->iterations,
-                                .evaluations = s->evaluations,
-                                .engine_steps = s->engine_steps,
+                                .step = run->kept.step,
                                 .seconds = mf_history_seconds(&run->history),
-                                .without_ramp = run->without_ramp,
-                                .ramp = s->ramp,
-                                .slowest = s->slowest,
-                                .settled = s->converged,
-                                .parameter = s->parameter,
-                                .number = s->number,
-                                .error = s->accuracy.error,
                                 .first_error = mf_history_first_error(&run->history),
-                                .formula = s->formula,
                                 .changes = &run->changes,
-                                .reason = s->reason};
+                                .reason = run->kept.step.reason};
+    result.step.formula = run->kept.formula;
+    result.step.without_ramp = run->without_ramp;
     for (int kind = 0; kind < UNKNOWNS; kind++) {
-        result.curve[kind] = run->curve[kind];
-        result.curve_error[kind] = run->curve_error[kind];
-        result.curve_flat[kind] = run->curve_flat[kind];
+        result.step.curve[kind] = run->curve[kind];
+        result.step.curve_error[kind] = run->curve_error[kind];
+        result.step.curve_flat[kind] = run->curve_flat[kind];
         result.first[kind] = run->history.iterations > 0 ? run->history.curve[kind] : NULL;
     }
     return result;
@@ -245,30 +229,29 @@ static void keep_curves(struct run *run, const struct inverse_step *step) {
         run->without_ramp[k] = without && isfinite(error[k]) ? without[k] : NAN;
 }
 
+/// An iteration as it is kept and told. What it borrows has no meaning in a checkpoint.
+static void keep(struct run *run, const struct inverse_step *step) {
+    struct inverse_step *kept = &run->kept.step;
+    keep_curves(run, step);
+    *kept = *step;
+    kept->without_ramp = NULL;
+    kept->formula = kept->begins = NULL;
+    kept->response = (struct inverse_response){0};
+    for (int kind = 0; kind < UNKNOWNS; kind++)
+        kept->curve[kind] = kept->curve_error[kind] = kept->curve_flat[kind] = NULL;
+    run->kept.time = time_of(run);
+    mf_units_convert_text(&run->fit.scene.units, kept->reason, sizeof kept->reason);
+    mf_fit_report_formula(&run->fit, step->formula, run->kept.formula);
+}
+
 static void own_file(void *context, const char *name, char *path) {
     mf_run_folder_file(context, name, path);
 }
 
 /// Remember an iteration and put it on disk.
 static enum status record(struct run *run, const struct inverse_step *step) {
-    keep_curves(run, step);
-    run->standing = (struct standing){.finished = step->finished,
-                                      .converged = step->converged,
-                                      .exhausted = step->exhausted,
-                                      .iterations = step->iteration + 1,
-                                      .evaluations = step->evaluations,
-                                      .engine_steps = step->engine_steps,
-                                      .accuracy = {step->error, step->variance, step->noise, {0}},
-                                      .time = time_of(run),
-                                      .ramp = step->ramp,
-                                      .slowest = step->slowest};
-    memcpy(run->standing.accuracy.noise, step->noise_of_state, sizeof run->standing.accuracy.noise);
-    memcpy(run->standing.parameter, step->parameter, sizeof run->standing.parameter);
-    memcpy(run->standing.number, step->number, sizeof run->standing.number);
-    memcpy(run->standing.reason, step->reason, sizeof run->standing.reason);
-    mf_units_convert_text(&run->fit.scene.units, run->standing.reason, INVERSE_REASON_SIZE);
-    mf_fit_report_formula(&run->fit, step->formula, run->standing.formula);
-    TRY(mf_history_add(&run->history, step, run->standing.time));
+    keep(run, step);
+    TRY(mf_history_add(&run->history, step, run->kept.time));
     TRY(mf_history_write(&run->history, run->fit.method, &run->unknowns, &run->fit.scene.units,
                          &run->folder));
     const struct fit_result result = result_so_far(run, STATUS_UNCONVERGED);
@@ -278,7 +261,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
         TRY(run->fit.method->write(run->state, &own));
     TRY(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
     mf_progress_report_written(&run->progress);
-    mf_fit_print_step(step, run->standing.time.seconds, &run->progress);
+    mf_fit_print_step(step, run->kept.time.seconds, &run->progress);
     if (step->begins)
         mf_progress_print(&run->progress, "%s", step->begins);
     TRY(mf_fit_checkpoint_begin(&run->checkpoint));
@@ -287,7 +270,7 @@ static enum status record(struct run *run, const struct inverse_step *step) {
 
 /// Between two iterations, so that one that was interrupted begins again with what it had.
 static enum status take_change(struct run *run) {
-    if (!mf_fit_damping_ask(&run->changes, run->standing.iterations, find_damping(run),
+    if (!mf_fit_damping_ask(&run->changes, run->history.iterations, find_damping(run),
                             &run->progress))
         return STATUS_OK;
     TRY(mf_fit_checkpoint_begin(&run->checkpoint));
@@ -296,10 +279,10 @@ static enum status take_change(struct run *run) {
 
 static enum status iterate(struct run *run) {
     const struct inverse_method *method = run->fit.method;
-    if (run->standing.finished)
+    if (run->kept.step.finished)
         mf_progress_print(&run->progress,
                           "the fit is finished: only its result is verified and written");
-    while (!run->standing.finished) {
+    while (!run->kept.step.finished) {
         struct inverse_step step;
         TRY(take_change(run));
         mf_task_log_use(&run->checkpoint.tasks);
@@ -317,11 +300,11 @@ static enum status iterate(struct run *run) {
 static enum status write_unstable(struct run *run) {
     struct fit_result result = result_so_far(run, STATUS_UNSTABLE);
     char reason[1024];
-    if (isfinite(run->standing.accuracy.error))
+    if (isfinite(run->kept.step.error))
         mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted");
     else
         mf_status_prefix(STATUS_UNSTABLE, "the verification of what was fitted (no result%s%s)",
-                         run->standing.reason[0] ? ": " : "", run->standing.reason);
+                         run->kept.step.reason[0] ? ": " : "", run->kept.step.reason);
     snprintf(reason, sizeof reason, "%s", mf_status_message());
     result.reason = reason;
     TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
@@ -331,20 +314,18 @@ static enum status write_unstable(struct run *run) {
 
 /// The verification has the last word.
 static void doubt(struct run *run, struct verification *verification) {
-    struct standing *standing = &run->standing;
-    if (!standing->converged && !standing->exhausted)
+    struct inverse_step *step = &run->kept.step;
+    if (!step->converged && !step->exhausted)
         return;
-    if (mf_fit_verify_any_contradicts(&run->fit, verification, &standing->accuracy,
-                                      standing->reason))
-        standing->converged = standing->exhausted = false;
-    else if (standing->converged &&
+    if (mf_fit_verify_any_contradicts(&run->fit, verification, step, step->reason))
+        step->converged = step->exhausted = false;
+    else if (step->converged &&
              (mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
                                       (const double *const *)run->curve_error,
-                                      &run->fit.scene.units, standing->reason) ||
-              mf_fit_closing_is_missed(&run->fit, verification, standing->accuracy.of_samples,
-                                       standing->reason))) {
-        standing->converged = false;
-        standing->exhausted = true;
+                                      &run->fit.scene.units, step->reason) ||
+              mf_fit_closing_is_missed(&run->fit, verification, step->noise, step->reason))) {
+        step->converged = false;
+        step->exhausted = true;
     }
 }
 
@@ -360,14 +341,14 @@ static enum status verify_and_write(struct run *run) {
     enum status status = STATUS_OK;
     NEW_ARRAY(verification, states);
     mf_task_log_use(&run->checkpoint.tasks);
-    const bool agreed = run->standing.converged && run->fit.method->kind == INVERSE_INVERSION;
-    status = mf_fit_verify_states(&run->fit, run->curve, run->standing.number,
-                                  agreed ? &run->standing.accuracy : NULL, &run->progress,
-                                  &listener, verification);
+    const bool agreed = run->kept.step.converged && run->fit.method->kind == INVERSE_INVERSION;
+    status = mf_fit_verify_states(&run->fit, run->curve, run->kept.step.number,
+                                  agreed ? &run->kept.step : NULL, &run->progress, &listener,
+                                  verification);
     mf_task_log_use(NULL);
     CHECK(status == STATUS_UNSTABLE ? write_unstable(run) : status);
     doubt(run, verification);
-    const bool accepted = run->standing.converged || run->standing.exhausted;
+    const bool accepted = run->kept.step.converged || run->kept.step.exhausted;
     struct fit_result result = result_so_far(run, accepted ? STATUS_OK : STATUS_UNCONVERGED);
     result.verification = verification;
     CHECK(mf_fit_tasks_write(&run->folder, mf_progress_seconds(&run->progress)));
@@ -383,7 +364,7 @@ static enum status verify_and_write(struct run *run) {
     mf_fit_closing_print(&run->progress, &run->fit, &run->unknowns, &result, run->folder.path);
     status = result.status;
     if (status == STATUS_UNCONVERGED)
-        mf_fit_print_unconverged(run->folder.path, &run->standing.accuracy, run->standing.reason);
+        mf_fit_print_unconverged(run->folder.path, &run->kept.step, run->kept.step.reason);
 done:
     for (size_t s = 0; verification && s < states; s++)
         mf_verify_clear(&verification[s]);
@@ -395,7 +376,7 @@ done:
 static enum status write_interrupted(struct run *run, const struct engine_door *door) {
     TRY(save(run));
     const struct fit_result result = result_so_far(run, STATUS_INTERRUPTED);
-    if (run->standing.iterations > 0) {
+    if (run->history.iterations > 0) {
         TRY(mf_fit_output_summary(&run->fit, &run->unknowns, &result, &run->folder));
         mf_run_folder_draw(&run->folder);
     }
@@ -404,7 +385,7 @@ static enum status write_interrupted(struct run *run, const struct engine_door *
     return mf_status_fail(
         STATUS_INTERRUPTED,
         "interrupted after %llu iterations; what there is, is in %s; continue with --resume",
-        (unsigned long long)run->standing.iterations, run->folder.path);
+        (unsigned long long)run->history.iterations, run->folder.path);
 }
 
 enum status mf_fit_run(const char *file, const struct run_options *options) {

@@ -8,7 +8,6 @@
 #include "work/explain.h"
 #include "work/fit.h"
 #include "defaults/fit_states.h"
-#include "work/fit_engine.h"
 #include "work/fit_tasks.h"
 #include "work/fit_print.h"
 

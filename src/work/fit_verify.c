@@ -148,7 +148,7 @@ static void name_state(const struct fit_file *state, char reason[INVERSE_REASON_
 
 static bool is_contradicted(const struct fit_file *state, const struct inverse_method *method,
                             const struct verification *verification,
-                            const struct fit_accuracy *of_fit, char reason[INVERSE_REASON_SIZE]) {
+                            const struct inverse_step *of_fit, char reason[INVERSE_REASON_SIZE]) {
     const struct targets *targets = &state->problem.targets;
     const struct units *units = &state->scene.units;
     const double temperature = state->problem.scene.temperature;
@@ -164,13 +164,13 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
 }
 
 bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verification *verification,
-                                   const struct fit_accuracy *of_fit,
+                                   const struct inverse_step *of_fit,
                                    char reason[INVERSE_REASON_SIZE]) {
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
         struct verification *const own = &verification[s];
         own->share = mf_verify_agree(&state->problem.targets, &own->sections, &own->observed,
-                                     of_fit->noise[s], own->agreement);
+                                     of_fit->noise_of_state[s], own->agreement);
     }
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
@@ -185,7 +185,7 @@ bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verificati
 
 enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
                                  const struct inverse_parameter *number,
-                                 const struct fit_accuracy *of_fit, struct progress *progress,
+                                 const struct inverse_step *of_fit, struct progress *progress,
                                  const struct inverse_listener *listener,
                                  struct verification *verification) {
     const double begun = clock_process_seconds();

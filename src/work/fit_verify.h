@@ -11,13 +11,6 @@
 /// verifications. Fails: as mf_run_folder_check_state and mf_run_folder_reserve.
 enum status mf_fit_verify_folders(const struct fit_file *fit, struct run_folder *folder) MUST_USE;
 
-/// How far a fit is from its targets, by itself.
-struct fit_accuracy {
-    double error, variance;           ///< as in struct inverse_step
-    double of_samples;                ///< its noise
-    double noise[INVERSE_MAX_STATES]; ///< of each state, of inversions
-};
-
 /// Simulate all states with what was found; the listener gets the simulations of all. Those of an
 /// inversion that contradict its samples begin once more, after four times as many steps as they
 /// had in all: from a random mixture clusters and slow waves of composition are long on their way,
@@ -30,7 +23,7 @@ struct fit_accuracy {
 /// Fails: as mf_verify and mf_unknowns_laws_make.
 enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
                                  const struct inverse_parameter *number,
-                                 const struct fit_accuracy *of_fit, struct progress *progress,
+                                 const struct inverse_step *of_fit, struct progress *progress,
                                  const struct inverse_listener *listener,
                                  struct verification *verification) MUST_USE;
 
@@ -40,7 +33,7 @@ enum status mf_fit_verify_states(struct fit_file *fit, double *const *curve,
 /// they agree, but how far they are off: that is what must be borne out.
 /// @param[in,out] verification  shape [states]; how far each agrees with its targets is found
 bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verification *verification,
-                                   const struct fit_accuracy *of_fit,
+                                   const struct inverse_step *of_fit,
                                    char reason[INVERSE_REASON_SIZE]);
 
 /// Tables of state number s: the first has those of the run's folder, the others have folders and

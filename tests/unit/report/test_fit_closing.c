@@ -67,7 +67,7 @@ struct closed {
 static struct closed *make_closed(double errors) {
     static struct closed closed;
     static const double value[6] = {1, 1, 0.5, 0.5, 0.2, 0.2};
-    closed = (struct closed){.result = {.status = STATUS_OK, .settled = true}};
+    closed = (struct closed){.result = {.status = STATUS_OK, .step.converged = true}};
     closed.result.verification = &closed.verification;
     struct targets *const targets = &closed.fit.problem.targets;
     targets->target[TARGET_ETD] = (struct target){.count = 6, .columns = 2, .value = value};
@@ -95,7 +95,7 @@ static void test_closing_calls_success_only_what_agrees_and_is_known(void **stat
     assert_string_equal(text, "converged: independent simulations differ from the targets, most "
                               "etd at 0.1 for r_0 from 1 to 1.5 by 5.2 times its statistical error "
                               "(by chance up to 4)");
-    closed->result.settled = false;
+    closed->result.step.converged = false;
     mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
     assert_contains(text, "finished: independent simulations differ");
     mf_fit_closing_verdict(&closed->fit, &closed->result, noise, text);

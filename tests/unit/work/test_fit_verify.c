@@ -53,8 +53,9 @@ static void test_verification_judges_each_state_by_the_noise_of_its_samples(void
     static struct made made;
     char reason[INVERSE_REASON_SIZE] = "";
     make(&made);
-    const struct fit_accuracy own = {.noise = {0.001, 0.003}}, mean = {.noise = {0.002, 0.002}},
-                              swapped = {.noise = {0.003, 0.001}};
+    const struct inverse_step own = {.noise_of_state = {0.001, 0.003}},
+                              mean = {.noise_of_state = {0.002, 0.002}},
+                              swapped = {.noise_of_state = {0.003, 0.001}};
     assert_false(mf_fit_verify_any_contradicts(&made.fit, made.verification, &own, reason));
     assert_true(mf_fit_verify_any_contradicts(&made.fit, made.verification, &mean, reason));
     assert_contains(reason, "hot");
