@@ -2,6 +2,7 @@
 #include "defaults/fit_file.h"
 
 #include "defaults/fit_densities.h"
+#include "defaults/fit_engine.h"
 #include "defaults/methods.h"
 #include "targets/target_sanity.h"
 #include "io/units_scale.h"
@@ -167,21 +168,38 @@ static bool follows_pairs(const struct inverse_method *method) {
     return method->kind != INVERSE_MATCHING || method == &mf_successive;
 }
 
-/// What moves the curves of all pairs would move that of pairs that there are not.
-static enum status check_single_beads(const struct fit_file *fit, const char *file) {
+/// What acts between pairs whose g(r) is not given: a potential of nobody's is none.
+static bool knows_others(const struct fit_file *fit) {
+    const bool engine = mf_fit_engine_knows_more(fit) && mf_fit_engine_verifies(fit);
+    return engine || fit->scene.known.curves > 0;
+}
+
+/// A potential is looked for between pairs whose g(r) is given. Of a single bead there are none;
+/// the potentials of others are known. What moves the curves of all pairs would move theirs.
+static enum status check_pair(const struct fit_file *fit, int pair, const char *file) {
     const struct composition *composition = &fit->scene.setup.composition;
-    const bool moves = fit->unknown[UNKNOWN_POTENTIAL].wanted && !follows_pairs(fit->method);
-    char others[METHODS_TEXT_SIZE];
-    for (int pair = 0; moves && pair < mf_composition_pairs(composition); pair++) {
-        char name[COMPOSITION_PAIR_NAME_SIZE];
-        mf_composition_pair_name(composition, pair, name);
-        if (!mf_composition_has_pairs(composition, pair))
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: method.name: a single bead has no pair %s, for which \"%s\" "
-                                  "would look for a potential; %s do not",
-                                  file, name, fit->method->name,
-                                  mf_methods_list(follows_pairs, others));
-    }
+    const bool exists = mf_composition_has_pairs(composition, pair);
+    char name[COMPOSITION_PAIR_NAME_SIZE], others[METHODS_TEXT_SIZE];
+    mf_composition_pair_name(composition, pair, name);
+    if (exists && !knows_others(fit))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: target.rdf.%s: missing: give its g(r), or, where its potential "
+                              "is known, that as \"known\" of \"scene\"",
+                              file, name);
+    if (follows_pairs(fit->method))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: method.name: %s pair %s, for which \"%s\" would look for a "
+                          "potential; %s do not",
+                          file, exists ? "no g(r) is given of the" : "a single bead has no", name,
+                          fit->method->name, mf_methods_list(follows_pairs, others));
+}
+
+static enum status check_pairs(const struct fit_file *fit, const char *file) {
+    const int pairs = mf_composition_pairs(&fit->scene.setup.composition);
+    for (int pair = 0; fit->unknown[UNKNOWN_POTENTIAL].wanted && pair < pairs; pair++)
+        if (!mf_targets_have_pair(&fit->problem.targets, (size_t)pair))
+            TRY(check_pair(fit, pair, file));
     return STATUS_OK;
 }
 
@@ -312,7 +330,7 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
                 ? ": its target is that of a constraint, whose potential is not fitted"
                 : "");
     TRY(check_bins(fit, file));
-    TRY(check_single_beads(fit, file));
+    TRY(check_pairs(fit, file));
     TRY(check_interactions(fit, file));
     TRY(check_velocities(fit, file));
     TRY(check_steps(fit, file));

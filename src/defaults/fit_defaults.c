@@ -57,7 +57,7 @@ static bool give_to_pairs(struct fit_choice *c, const char *key, double value) {
         struct target_rdf *member = &rdf->member[pair];
         const struct fit_place place = {"target.rdf", mf_target_rdf_fields, &member->parameters,
                                         &member->given};
-        if (mf_composition_has_pairs(c->rdf->composition, (int)pair))
+        if (rdf->has_g[pair])
             given |= mf_fit_choice_give(c, &place, key, value);
     }
     return given;

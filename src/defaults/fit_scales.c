@@ -16,6 +16,11 @@ static size_t pairs_of(const struct fit_scales_rdf *rdf) {
     return (size_t)mf_composition_pairs(rdf->composition);
 }
 
+/// Whether g of a pair type is known.
+static bool has_g(const struct fit_scales_rdf *rdf, size_t pair) {
+    return !isnan(rdf->g[pair * rdf->bins.count]);
+}
+
 static struct view view_of(const struct fit_scales_rdf *rdf, size_t pair) {
     const size_t bins = rdf->bins.count, first = 3 * bins / 4;
     struct view view = {&rdf->bins, rdf->g + pair * bins, rdf->error + pair * bins, 0};
@@ -156,7 +161,7 @@ struct fit_scales mf_fit_scales_find(const struct fit_scales_rdf *rdf, double te
                                 .range = mf_rdf_bins_range(&rdf->bins)};
     const double spacing = pow(rdf->density, -1.0 / rdf->dimensions);
     for (size_t pair = 0; pair < pairs_of(rdf); pair++) {
-        if (!mf_composition_has_pairs(rdf->composition, (int)pair))
+        if (!has_g(rdf, pair))
             continue;
         const struct view view = view_of(rdf, pair);
         const double neighbour = find_neighbour(&view, spacing);
@@ -184,7 +189,7 @@ double mf_fit_scales_friction(const struct fit_scales_rdf *rdf, double cutoff) {
     double sum = 0;
     for (size_t pair = 0; pair < pairs_of(rdf); pair++) {
         int type[2];
-        if (!mf_composition_has_pairs(composition, (int)pair))
+        if (!has_g(rdf, pair))
             continue;
         mf_composition_pair_types(composition, (int)pair, type);
         const double share = (type[0] == type[1] ? 1 : 2) * (double)composition->count[type[0]] *
@@ -208,8 +213,8 @@ double mf_fit_scales_noise_of_sample(const struct fit_scales_rdf *rdf, const str
             const double ideal =
                 larger * mf_rdf_ideal_pairs_of(bins, k, box, rdf->composition, pair);
             const double g = rdf->g[(size_t)pair * bins->count + k];
-            squares += ideal > 0 ? g / ideal : 0;
-            seen += ideal > 0;
+            squares += ideal > 0 && !isnan(g) ? g / ideal : 0;
+            seen += ideal > 0 && !isnan(g);
         }
     return sqrt(squares / seen);
 }

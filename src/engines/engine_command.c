@@ -112,6 +112,8 @@ static enum status write_piece(const struct engine_run *run, const struct engine
     struct job job = {run, piece, 0};
     for (; job.pair < mf_composition_pairs(&run->fit->scene.setup.composition); job.pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE + 16];
+        if (!mf_targets_have_pair(&run->fit->problem.targets, (size_t)job.pair))
+            continue; // the command has it
         name_table(&job, name);
         TRY(mf_engine_write(folder, name, print_table, &job));
     }

@@ -183,7 +183,8 @@ static void print_interactions(const void *memory, FILE *stream) {
         mf_export_lammps_coefficients(&job->export, stream);
     }
     for (int pair = 0; pair < job->export.grids.pairs; pair++)
-        print_pair(job, pair, own_style && shared->files.is_hybrid ? "table" : "", stream);
+        if (!shared->input || mf_targets_have_pair(&job->run->fit->problem.targets, (size_t)pair))
+            print_pair(job, pair, own_style && shared->files.is_hybrid ? "table" : "", stream);
 }
 
 /// A seed as LAMMPS takes it, for each piece another.
@@ -203,8 +204,8 @@ static void print_run(const void *memory, FILE *stream) {
     if (!piece->fresh)
         fprintf(stream, "read_dump '%s/%s' 0 x y z vx vy vz ix iy iz box yes replace yes\n",
                 job->before, last_name);
-    else if (own)
-        fprintf(stream, "velocity all create %.12g %u dist gaussian\n",
+    else if (own) // where it begins chains may touch
+        fprintf(stream, "minimize 1e-3 0 100 1000\nvelocity all create %.12g %u dist gaussian\n",
                 piece->temperature * job->export.units.temperature, seed_of(piece));
     if (piece->lead > 0)
         fprintf(stream, "run %llu\n", (unsigned long long)engine_steps(job->run, piece->lead));

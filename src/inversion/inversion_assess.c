@@ -27,12 +27,12 @@ double mf_inversion_target_g(const struct inversion_state *state, size_t bin) {
 /// Add a section to the distance of its kind, over the bins of all of them, with the mean variance
 /// of the samples for its own.
 static void add_distance(struct target_distance *distance, double sum, double both, double own,
-                         size_t bins) {
-    const double before = (double)distance->count, all = before + (double)bins;
+                         double bins) {
+    const double before = (double)distance->count, all = before + bins;
     distance->rms = sqrt((before * distance->rms * distance->rms + sum) / all);
     distance->noise = sqrt((before * distance->noise * distance->noise + both) / all);
     distance->variance = (before * distance->variance + own) / all;
-    distance->count += bins;
+    distance->count += (size_t)bins;
 }
 
 double mf_inversion_target_variance(const struct inversion_state *state, size_t a) {
@@ -191,14 +191,14 @@ static double mean_target_variance(const struct inversion_state *state,
         if (state->grid.seen[a])
             sum += mf_inversion_target_variance(state, a) /
                    pow(state->target.unit[state->grid.known_bin[a]], 2);
-    return sum / (double)section->bins;
+    return sum / section->told;
 }
 
 /// Of one section; returns its χ².
 static double assess(struct inversion_state *state, struct inversion_section *section) {
     const struct comoments *counts = &state->replicas.counts;
     const size_t *known_bin = state->grid.known_bin;
-    const double bins = (double)section->bins;
+    const double bins = section->told;
     const double mean = mean_target_variance(state, section);
     double sum = 0, own = 0, both = 0, whole = 0, alone = 0, followed = 0, seen = 0, wanted = 0;
     find_inefficiencies(state, section);
@@ -228,7 +228,7 @@ static double assess(struct inversion_state *state, struct inversion_section *se
                                                    section->known + section->known_count);
     const struct explained explained =
         explain(state, state->excess, section->known, section->known + section->known_count);
-    add_distance(&state->assessment.distance[section->kind], sum, whole, own, section->bins);
+    add_distance(&state->assessment.distance[section->kind], sum, whole, own, bins);
     section->rms = sqrt(fmax(0, sum - explained.square) / bins) / section->peak;
     section->noise = sqrt(fmax(0, both - explained.noise) / bins) / section->peak;
     section->misfit = seen > 0 ? misfit / seen : 0;

@@ -59,8 +59,8 @@ static enum status refuse_missing_pairs(const struct inversion_state *state,
         mf_composition_pair_name(&state->problem->scene.composition, (int)pair, name);
         return mf_status_fail(
             STATUS_BAD_INPUT,
-            "scene.particles: one state has pairs of %s and another has none, as a "
-            "single bead has none: all states must have them, or none",
+            "target.rdf: one state has g(r) of %s and another has none: all must have it, or none "
+            "(a single bead has no pairs)",
             name);
     }
     return STATUS_OK;

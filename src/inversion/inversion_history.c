@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion_history.h"
 
+#include <math.h>
+
 enum status mf_inversion_history_init(struct inversion_history *history, size_t capacity,
                                       size_t bins) {
     enum status status = STATUS_OK;
@@ -16,10 +18,10 @@ void mf_inversion_history_clear(struct inversion_history *history) {
 }
 
 void mf_inversion_history_add(struct inversion_history *history, const double *counts,
-                              const double *target_counts) {
+                              const double *target_counts, const double *unit) {
     double *excess = history->excess + history->iterations++ * history->bins;
     for (size_t bin = 0; bin < history->bins; bin++)
-        excess[bin] = counts[bin] - target_counts[bin];
+        excess[bin] = isinf(unit[bin]) ? 0 : counts[bin] - target_counts[bin];
 }
 
 size_t mf_inversion_history_spans(struct inversion_history *history, struct memory_span *span) {

@@ -21,8 +21,18 @@ static bool has_molecules(const struct inversion_state *state) {
     return mf_molecules_find(scene->interaction, scene->interactions) != NULL;
 }
 
+/// The equation of Ornstein and Zernike needs g of all pairs that there are.
+static bool knows_all_pairs(const struct inversion_state *state) {
+    bool all = true;
+    for (size_t pair = 0; pair < state->grid.pairs; pair++)
+        all = all && (state->grid.known_of[pair] > 0 ||
+                      !mf_composition_has_pairs(&state->composition, (int)pair));
+    return all;
+}
+
 bool mf_inversion_knows_intramolecular(const struct inversion_state *state) {
-    return state->box.dimensions == 3 && (!has_molecules(state) || state->inside.min > independent);
+    return state->box.dimensions == 3 && knows_all_pairs(state) &&
+           (!has_molecules(state) || state->inside.min > independent);
 }
 
 struct hnc_liquid mf_inversion_liquid(const struct inversion_state *state) {

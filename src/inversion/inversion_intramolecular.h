@@ -18,8 +18,8 @@
 enum status mf_inversion_intramolecular_find(struct inversion_state *state, double *phi,
                                              const struct inverse_listener *listener) MUST_USE;
 
-/// Whether the hypernetted chain knows the state's liquid: single beads, or molecules whose
-/// structure was found to be of use.
+/// Whether the hypernetted chain knows the state's liquid: g of all its pairs, of single beads, or
+/// of molecules whose structure was found to be of use.
 bool mf_inversion_knows_intramolecular(const struct inversion_state *state);
 
 /// What it knows.

@@ -38,7 +38,7 @@ enum { INVERSION_FROM_HNC, INVERSION_FROM_MEAN_FORCE, INVERSION_FROM_FORCES };
 /// group, in one sample; S* is what it should be. Shape [bins] each.
 struct inversion_target {
     double *ideal;           ///< S if g were 1, or p its mean over the known bins
-    double *unit;            ///< S for a value of 1 of the target
+    double *unit;            ///< S for a value of 1 of the target; infinite where there is none
     double *counts, *error;  ///< S of the target and its error
     double *min;             ///< S/ideal that counts as none
     double *common;          ///< error of S* by the factor of its pair type, shape [known]

@@ -65,7 +65,7 @@ static enum status write_pairs(const struct inversion_state *state,
     for (size_t k = 0; k < bins; k++)
         column[0][k] = mf_rdf_bins_centre(&state->problem->targets.bins, k);
     for (size_t pair = 0; pair < state->grid.pairs; pair++) {
-        if (!mf_composition_has_pairs(&state->composition, (int)pair))
+        if (state->grid.known_of[pair] == 0)
             continue;
         fill(state, pair * bins, bins, column);
         find_path(state, pair, "rdf_now", ".tsv", folder, path);
@@ -142,7 +142,7 @@ static enum status write_excess(const struct inversion *inversion,
     const size_t bins = first->grid.bins;
     char path[OUTPUT_PATH_SIZE];
     for (size_t pair = 0; pair < first->grid.pairs; pair++) {
-        if (!mf_composition_has_pairs(&first->composition, (int)pair))
+        if (first->grid.known_of[pair] == 0)
             continue;
         const struct data_column r = {
             "r[lambda]", first->grid.r + mf_potential_grid_block(&first->grid, pair), NULL};

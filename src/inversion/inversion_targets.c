@@ -31,8 +31,10 @@ static void set_pairs(struct inversion_state *state) {
                 mf_rdf_ideal_pairs_of(bins, k, &state->box, &state->composition, pair);
             state->target.min[bin] = problem->core_threshold;
             state->target.ideal[bin] = state->target.unit[bin] = ideal > 0 ? ideal : 1;
-            if (!(ideal > 0))
-                continue; // no pairs are counted, and none are wanted
+            if (!mf_targets_have_pair(&problem->targets, (size_t)pair)) {
+                state->target.unit[bin] = INFINITY; // what is counted says nothing
+                continue;
+            }
             state->target.counts[bin] = ideal * target->value[bin] * factor;
             state->target.error[bin] = ideal * target->error[bin];
         }
@@ -125,6 +127,7 @@ static void enter_group(struct inversion_state *state, size_t g) {
     struct inversion_section *section = add_section(state, mf_group_kind_target(unknown->order));
     section->bins = unknown->bins.count;
     section->known_count = own->known;
+    section->told = (double)section->bins;
     section->peak = peak_of(own);
     state->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins,
                                               unknown->order == INVERSE_LOCAL_DENSITY
@@ -141,6 +144,8 @@ void mf_inversion_count_targets(struct inversion_state *state) {
         struct inversion_section *section = add_section(state, TARGET_RDF);
         section->bins = grid->pair_bins;
         section->known_count = grid->pairs_known;
+        for (size_t pair = 0; pair < grid->pairs; pair++)
+            section->told += grid->known_of[pair] > 0 ? (double)grid->bins : 0;
         section->peak = 1;
     }
     set_pairs(state);

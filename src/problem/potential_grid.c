@@ -46,7 +46,7 @@ static enum status find_core(struct potential_grid *grid, const struct inverse_p
                              size_t pair) {
     const size_t first = pair * grid->bins;
     size_t *core = &grid->core[pair];
-    if (!mf_composition_has_pairs(&problem->scene.composition, (int)pair)) {
+    if (!mf_targets_have_pair(&problem->targets, pair)) {
         *core = grid->empty[pair] = grid->bins; // nothing is to be found
         return STATUS_OK;
     }
@@ -225,7 +225,7 @@ void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double 
         const size_t first = grid->core[pair], empty = grid->empty[pair];
         const double *r = grid->r + begin;
         double *block = phi + begin;
-        if (first == grid->bins) { // no potential of pairs that there are not
+        if (first == grid->bins) { // it is known, or there are no such pairs
             memset(block, 0, (grid->bins + 1) * sizeof *block);
             continue;
         }

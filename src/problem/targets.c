@@ -17,6 +17,11 @@ static const double max_independent = 10;
 /// Weight of a target without errors: as if they were this [unit of the target].
 static const double assumed_error = 0.01;
 
+bool mf_targets_have_pair(const struct targets *targets, size_t pair) {
+    const struct target *rdf = &targets->target[TARGET_RDF];
+    return rdf->count > 0 && !isnan(rdf->value[pair * targets->bins.count]);
+}
+
 size_t mf_targets_count(const struct targets *targets) {
     size_t count = 0;
     for (int kind = 0; kind < TARGETS; kind++)

@@ -76,6 +76,10 @@ static inline bool targets_ask(const struct targets *targets, enum target_kind k
     return targets->target[kind].count > 0;
 }
 
+/// Whether g(r) of a pair type is known. That of single beads is not, nor of pairs whose potential
+/// is known and not looked for.
+bool mf_targets_have_pair(const struct targets *targets, size_t pair);
+
 /// Number of targets that are asked for.
 size_t mf_targets_count(const struct targets *targets);
 

@@ -21,7 +21,7 @@ static double density_at(const struct inverse_problem *problem, const struct tab
     const struct rdf_bins *bins = &problem->compared.bins;
     const size_t k = (size_t)(r / bins->width);
     double phi;
-    if (targets_ask(&problem->compared, TARGET_RDF))
+    if (mf_targets_have_pair(&problem->compared, (size_t)pair))
         return k < bins->count
                    ? problem->compared.target[TARGET_RDF].value[(size_t)pair * bins->count + k]
                    : 1;

@@ -138,6 +138,8 @@ static void print_changes(struct progress *to, const struct units *units,
             char energies[UNITS_NAME_SIZE], lengths[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE];
             const struct fit_change change = mf_fit_change_find(
                 unknowns, kind, n, result->first[kind], result->step.curve[kind]);
+            if (isnan(change.rms))
+                continue; // that of pairs without g(r) is not looked for
             mf_unknowns_curve_name(unknowns, kind, n, name);
             if (kind == UNKNOWN_POTENTIAL && change.well < 0)
                 snprintf(well, sizeof well, " well %.3f %s at %.3g %s (%.3f at %.3g at first),",

@@ -22,26 +22,29 @@ static void cut_to_shortest(struct target_pairs *target) {
     }
 }
 
-/// Pair types of which there is no pair have the bins of the others, and no g.
-static void fill_bins(struct target_pairs *target, const struct composition *composition) {
+/// Pair types that are not given have the bins of the others, and no g.
+static void fill_bins(struct target_pairs *target) {
     struct rdf_bins bins = {.count = 0};
     for (size_t pair = 0; pair < target->pairs && bins.count == 0; pair++)
-        if (mf_composition_has_pairs(composition, (int)pair))
+        if (target->has_g[pair])
             bins = target->member[pair].bins;
     for (size_t pair = 0; pair < target->pairs; pair++)
-        if (!mf_composition_has_pairs(composition, (int)pair))
+        if (!target->has_g[pair])
             target->member[pair].bins = bins;
 }
 
-/// All pair types must have the bins of the first.
+/// All pair types must have the bins of the first that is given.
 static void check_bins(const struct target_pairs *target, const struct composition *composition,
                        struct json_object *object) {
     const struct rdf_bins *first = target_pairs_bins(target);
-    for (size_t pair = 1; pair < target->pairs; pair++) {
+    size_t of = 0;
+    while (of + 1 < target->pairs && !target->has_g[of])
+        of++;
+    for (size_t pair = of + 1; pair < target->pairs; pair++) {
         const struct rdf_bins *bins = &target->member[pair].bins;
         char name[COMPOSITION_PAIR_NAME_SIZE], first_name[COMPOSITION_PAIR_NAME_SIZE];
         mf_composition_pair_name(composition, (int)pair, name);
-        mf_composition_pair_name(composition, 0, first_name);
+        mf_composition_pair_name(composition, (int)of, first_name);
         // A file that could not be read has its own fault.
         if (first->count > 0 && bins->count > 0 &&
             (bins->count != first->count || fabs(bins->width / first->width - 1) > 1e-6 ||
@@ -71,7 +74,7 @@ static enum status collect(struct target_pairs *target, const struct finite_size
     TRY_ARRAY(target->given, target->pairs * bins);
     TRY_ARRAY(target->factor_error, target->pairs);
     for (size_t pair = 0; pair < target->pairs; pair++)
-        if (mf_composition_has_pairs(fluid->composition, (int)pair))
+        if (target->has_g[pair])
             mf_target_rdf_convert(&target->member[pair], fluid, (int)pair, target->g + pair * bins,
                                   target->error + pair * bins);
         else
@@ -86,7 +89,7 @@ static enum status compare_and_collect(struct target_pairs *target, struct json_
                                        const struct finite_size_fluid *fluid) {
     if (composition_is_mixed(fluid->composition)) {
         cut_to_shortest(target);
-        fill_bins(target, fluid->composition);
+        fill_bins(target);
         check_bins(target, fluid->composition, object);
     }
     return collect(target, fluid);
@@ -102,6 +105,7 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
     if (!composition_is_mixed(composition)) {
         if (mf_scene_pair_names_refuse(object, composition, "{\"file\": …}"))
             return STATUS_OK;
+        target->has_g[0] = true;
         TRY(mf_target_rdf_read(&target->member[0], object, units, fluid->box->dimensions));
         return compare_and_collect(target, object, fluid);
     }
@@ -109,6 +113,7 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
     char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     const char *key[COMPOSITION_MAX_PAIRS];
     const bool known = mf_scene_pair_names_find(object, composition, key);
+    const bool any = mf_json_key(object, 0) != NULL;
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(composition, (int)pair, name[pair]);
         if (!mf_composition_has_pairs(composition, (int)pair)) {
@@ -118,8 +123,11 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
                               "out");
             continue;
         }
-        // What is missing may be what a wrong name was to be.
-        struct json_object child = mf_json_child(object, key[pair] ? key[pair] : name[pair], known);
+        // Of some pairs alone: whether the others are known is seen later (defaults/fit_check). What
+        // is missing may be what a wrong name was to be.
+        struct json_object child =
+            mf_json_child(object, key[pair] ? key[pair] : name[pair], known && !any);
+        target->has_g[pair] = child.item != NULL;
         if (child.item)
             TRY(mf_target_rdf_read(&target->member[pair], &child, units, fluid->box->dimensions));
     }
@@ -134,6 +142,14 @@ static void divide(struct target_pairs *target, size_t pair, double factor) {
         target->g[n] /= factor;
         target->error[n] /= factor;
     }
+}
+
+/// Whether g of all pairs that there are is given.
+static bool is_whole(const struct target_pairs *target, const struct composition *composition) {
+    bool whole = true;
+    for (size_t pair = 0; pair < target->pairs; pair++)
+        whole = whole && (target->has_g[pair] || !mf_composition_has_pairs(composition, (int)pair));
+    return whole;
 }
 
 /// Divide by what the file says, which is 1 where it says nothing. Returns how many pair types it
@@ -155,8 +171,7 @@ static size_t normalise(struct target_pairs *target) {
 static double find_factor_error(const struct target_files *files, int pair) {
     const struct target_rdf_parameters *p = &target_files_rdf(files)->member[pair].parameters;
     int type[2];
-    if (p->normalisation > 0 || p->particles > 0 ||
-        !mf_composition_has_pairs(&files->composition, pair))
+    if (p->normalisation > 0 || p->particles > 0 || !target_files_rdf(files)->has_g[pair])
         return 0;
     if (files->normalisation.found)
         return files->normalisation.error;
@@ -178,7 +193,7 @@ enum status mf_target_files_normalise(struct target_files *files, const struct b
     for (size_t pair = 0; pair < rdf->pairs; pair++)
         width = fmax(width, rdf->member[pair].parameters.normalisation_error);
     // What all together say tells nothing of a part of them.
-    if (given == 0 && !joined)
+    if (given == 0 && !joined && is_whole(rdf, &files->composition))
         TRY(mf_normalisation_find(target_pairs_bins(rdf), box, &files->composition, rdf->g,
                                   rdf->error, width, &files->normalisation));
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
@@ -223,7 +238,7 @@ static enum status complete(struct target_files *files, int kind, struct json_ob
     struct target_pairs *target = files->own[kind];
     const struct finite_size_fluid fluid = fluid_of(files, kind, scene);
     for (size_t pair = 0; pair < target->pairs; pair++)
-        if (mf_composition_has_pairs(fluid.composition, (int)pair))
+        if (target->has_g[pair])
             TRY(mf_target_rows_fault(object, NULL, mf_target_rdf_cut(&target->member[pair])));
     TRY(compare_and_collect(target, object, &fluid));
     return fluid.intermolecular ? set_bins_of_intermolecular(files, kind) : STATUS_OK;
@@ -245,7 +260,7 @@ static void write(const struct target_files *files, int kind, struct json_writer
     }
     for (size_t pair = 0; pair < target->pairs; pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE];
-        if (!mf_composition_has_pairs(composition, (int)pair))
+        if (!target->has_g[pair])
             continue;
         mf_composition_pair_name(composition, (int)pair, name);
         mf_json_begin(writer, name);
@@ -292,7 +307,7 @@ static bool find_table(const struct target_files *files, int kind, size_t pair,
     *table = (struct target_table){
         .part = pair,
         .first = pair * bins,
-        .count = mf_composition_has_pairs(&files->composition, (int)pair) ? bins : 0,
+        .count = target->has_g[pair] ? bins : 0,
         .places = 1,
         .place = {"r[lambda]"},
         .beside = true};

@@ -9,6 +9,7 @@
 /// Tested: test_target_files, test_target_files_mixture.
 struct target_pairs {
     size_t pairs;                                    ///< pair types of the scene; 0: not given
+    bool has_g[COMPOSITION_MAX_PAIRS];               ///< the others have bins alone
     struct target_rdf member[COMPOSITION_MAX_PAIRS]; ///< of each pair type, in the same bins
     /// Of all, one after the other, in the numbers of the scene: shape [pairs, bins].
     double *g, *error;

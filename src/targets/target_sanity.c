@@ -268,7 +268,7 @@ static bool find_view(const struct target_files *files, const struct scene *scen
     const int kind = n < COMPOSITION_MAX_PAIRS ? TARGET_RDF : mf_rdf_intermolecular_kind();
     const struct target_pairs *all = files->own[kind];
     const size_t pair = n % COMPOSITION_MAX_PAIRS;
-    if (pair >= all->pairs || !mf_composition_has_pairs(&scene->setup.composition, (int)pair))
+    if (pair >= all->pairs || !all->has_g[pair])
         return false;
     *view = view_of(all, kind, scene, pair);
     return true;

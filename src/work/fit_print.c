@@ -111,9 +111,31 @@ static void tell_known(const struct fit_file *fit, const struct target_sanity_li
                                           : "the tables of the engine are of both");
 }
 
+/// Pairs whose potential is not looked for.
+static void tell_others(const struct fit_file *fit, const struct target_sanity_listener *listener) {
+    const struct composition *composition = &fit->scene.setup.composition;
+    char others[256] = "";
+    size_t used = 0;
+    for (int pair = 0; pair < mf_composition_pairs(composition) && used < sizeof others; pair++) {
+        char name[COMPOSITION_PAIR_NAME_SIZE];
+        mf_composition_pair_name(composition, pair, name);
+        if (!mf_targets_have_pair(&fit->problem.targets, (size_t)pair) &&
+            mf_composition_has_pairs(composition, pair))
+            used += (size_t)snprintf(others + used, sizeof others - used, "%s%s",
+                                     used > 0 ? ", " : "", name);
+    }
+    if (used > 0 && fit->unknown[UNKNOWN_POTENTIAL].wanted)
+        mf_target_sanity_warn(listener,
+                              "no g(r) is given of %s: their potential is not looked for; %s",
+                              others,
+                              mf_fit_engine_knows_more(fit) ? "the engine has it"
+                                                            : "it is that of scene.known");
+}
+
 enum status mf_fit_print_state(const struct fit_file *fit,
                                const struct target_sanity_listener *listener) {
     tell_known(fit, listener);
+    tell_others(fit, listener);
     warn_of_step(fit, listener);
     TRY(warn_of_range(fit, listener));
     return mf_target_sanity_report(&fit->files, &fit->scene, listener);

@@ -200,6 +200,44 @@ static void test_states_share_the_rest_when_each_has_a_known_part(void **state) 
     results_assert_number("out/used.json", "states.weak.scene.known.a", 10);
 }
 
+#define SAME "{\"law\": \"soft-repulsion\", \"a\": 25}"
+#define OTHER "{\"law\": \"soft-repulsion\", \"a\": 40}"
+#define LAWS(PAIR) "{\"A-A\": " SAME ", \"A-B\": " PAIR ", \"B-B\": " SAME "}"
+
+/// Where a solute meets a solvent: g(r) of the pairs that are looked for is enough, if the others
+/// are known.
+static void test_pairs_without_a_target_are_known(void **state) {
+    small_inputs_change(*state, "truth.json", "{\"count\": 250}",
+                        "{\"types\": {\"A\": 150, \"B\": 100}}");
+    small_inputs_change(*state, "truth.json", SAME, LAWS(OTHER));
+    twins_simulate("truth.json", "mixture");
+    small_inputs_change(*state, "run.json", "{\"count\": 250}",
+                        "{\"types\": {\"A\": 150, \"B\": 100}}");
+    small_inputs_change(*state, "run.json", "{\"file\": \"truth/rdf.tsv\"}",
+                        "{\"A-B\": {\"file\": \"mixture/rdf_A-B.tsv\"}}");
+    small_inputs_change(*state, "run.json", "\"unknowns\": {\"potential\": {\"truth\": " TRUTH "}},",
+                        "");
+    small_inputs_change(*state, "run.json", KNOWN, "\"known\": " LAWS("{\"law\": \"none\"}"));
+    small_inputs_change(*state, "run.json", METHOD,
+                        "\"unknowns\": {\"potential\": {\"truth\": {\"A-A\": {\"law\": \"none\"}, "
+                        "\"A-B\": " OTHER ", \"B-B\": {\"law\": \"none\"}}}}, " METHOD);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "no g(r) is given of A-A, B-B: their potential is not looked for; "
+                                "it is that of scene.known");
+    assert_null(strstr(result.err, "nan"));
+    const double z = rms_deviation("out/potential_A-B.tsv", true);
+    print_message("(phi - truth)/error %.2f rms\n", z);
+    assert_true(z < 1.3);
+    assert_true(results_number("out/summary.json", "rdf_rmse") < 0.02);
+    RUN_PROGRAM(&result, "fit", "out/used.json", "--explain");
+    run_program_assert_code(&result, 0);
+    small_inputs_change(*state, "run.json", ", \"known\": " LAWS("{\"law\": \"none\"}"), "");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "target.rdf.A-A: missing: give its g(r), or");
+}
+
 /// Dimers: a bond that is looked for, too, and pairs that are excluded from both parts.
 static void test_bonds_are_found_beside_a_known_part(void **state) {
     static const char dimers[] =
@@ -272,6 +310,7 @@ int main(void) {
         TEST(test_used_and_explain_tell_what_is_known),
         TEST(test_an_interrupted_fit_has_the_same_bits),
         TEST(test_states_share_the_rest_when_each_has_a_known_part),
+        TEST(test_pairs_without_a_target_are_known),
         TEST(test_bonds_are_found_beside_a_known_part),
         TEST(test_a_search_finds_the_rest),
         TEST(test_what_is_wrong_is_said_in_one_line),

@@ -94,7 +94,7 @@ static void test_states_have_the_same_pairs(void **state) {
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
     run_program_assert_code(&result, 2);
     assert_non_null(
-        strstr(result.err, "states.dilute: scene.particles: one state has pairs of B-B"));
+        strstr(result.err, "states.dilute: target.rdf: one state has g(r) of B-B"));
 }
 
 int main(void) {
