@@ -65,6 +65,8 @@ void mf_fit_engine_read(struct fit_file *fit, struct json_object *root) {
         mf_json_fault(&object, "frames", "missing: the trajectory that the command leaves");
     if (engine->kind != ENGINE_COMMAND && engine->frames[0])
         mf_json_fault(&object, "frames", "it is for the engine \"command\"");
+    if (engine->kind != ENGINE_COMMAND && engine->tables)
+        mf_json_fault(&object, "tables", "it is for the engine \"command\"; LAMMPS has its own");
     if (engine->kind != ENGINE_LAMMPS && engine->input[0])
         mf_json_fault(&object, "input", "it is for the engine \"lammps\"");
     if (engine->input[0] && engine->time_step > 0)

@@ -6,6 +6,8 @@
 #include "curves/table.h"
 #include "engines/engine.h"
 #include "engines/engine_folder.h"
+#include "engines/engine_model.h"
+#include "export/export_engine.h"
 #include "io/json.h"
 #include "io/json_write.h"
 
@@ -107,16 +109,34 @@ static void print_description(const void *memory, FILE *stream) {
     mf_json_writer_free(writer);
 }
 
+/// The same tables as `export` writes them for the engine that the command drives.
+static enum status write_tables(const struct engine_run *run, const struct engine_piece *piece,
+                                const char *folder) {
+    OWNED struct export_model *model = NULL;
+    struct export_job job = {.folder = folder};
+    if (run->settings->tables == 0)
+        return STATUS_OK;
+    TRY(mf_export_find(mf_sampling_engine_tables[run->settings->tables], &job.engine));
+    TRY_ARRAY(model, 1);
+    mf_engine_model(run, piece, model);
+    job.model = model;
+    job.units = mf_export_units(job.engine->system, &run->fit->scene.units, job.engine->physical);
+    TRY(mf_export_grids_make(&job.grids, job.engine->interpolation, model, false,
+                             job.engine->one_cutoff ? piece->potential->cutoff : 0));
+    const enum status status = job.engine->tables(&job);
+    mf_export_grids_clear(&job.grids);
+    return status;
+}
+
 static enum status write_piece(const struct engine_run *run, const struct engine_piece *piece,
                                const char *folder) {
     struct job job = {run, piece, 0};
     for (; job.pair < mf_composition_pairs(&run->fit->scene.setup.composition); job.pair++) {
         char name[COMPOSITION_PAIR_NAME_SIZE + 16];
-        if (!mf_targets_have_pair(&run->fit->problem.targets, (size_t)job.pair))
-            continue; // the command has it
         name_table(&job, name);
         TRY(mf_engine_write(folder, name, print_table, &job));
     }
+    TRY(write_tables(run, piece, folder));
     return mf_engine_write(folder, description, print_description, &job);
 }
 

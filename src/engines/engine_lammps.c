@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "engines/engine.h"
 #include "engines/engine_folder.h"
+#include "engines/engine_model.h"
 #include "engines/lammps_input.h"
 #include "export/export_lammps_molecules.h"
 #include "export/export_start.h"
@@ -35,31 +36,7 @@ struct job {
     char before[OUTPUT_PATH_SIZE]; ///< folder of the piece before
 };
 
-// The scene ---------------------------------------------------------------------------------------
-
-static void name_types(struct export_model *model) {
-    const struct composition *composition = &model->setup.composition;
-    model->types = composition->types > 1 ? composition->types : 1;
-    for (int type = 0; type < model->types; type++)
-        snprintf(model->name[type], sizeof model->name[type], "%s",
-                 composition->name[type][0] ? composition->name[type] : "A");
-}
-
-/// The scene with the potentials of a piece, without friction.
-static void set_scene(const struct engine_run *run, const struct engine_piece *piece,
-                      struct export_model *model) {
-    model->setup = run->fit->scene.setup;
-    model->setup.potential = piece->potential;
-    model->setup.omega = NULL;
-    model->molecules = piece->molecules;
-    for (int n = 0; piece->molecules && n < model->setup.interactions; n++)
-        if (model->setup.interaction[n].kind == &mf_molecules)
-            model->setup.interaction[n].parameters = piece->molecules;
-    if (run->settings->time_step > 0)
-        model->setup.time_step = run->settings->time_step;
-    model->configurational = (struct export_number){NAN, NAN};
-    model->rdf_range = piece->potential->cutoff;
-}
+// The input ---------------------------------------------------------------------------------------
 
 /// All that is exchanged is in these units.
 static enum status check_units(const struct engine_run *run, const struct lammps_input *input) {
@@ -138,8 +115,7 @@ static enum status prepare(struct engine_run *run, const struct engine_piece *pi
     run->own = shared;
     if (run->settings->input[0])
         return check_input(run, shared);
-    set_scene(run, piece, &shared->model);
-    name_types(&shared->model);
+    mf_engine_model(run, piece, &shared->model);
     shared->model.scene.start = run->fit->scene.start;
     TRY(mf_export_start_find(&shared->model));
     mf_engine_path(run->folder, "engine", folder);
@@ -289,9 +265,7 @@ static enum status write_piece(const struct engine_run *run, const struct engine
     job->model = ((const struct shared *)run->own)->model;
     job->run = run;
     job->piece = piece;
-    set_scene(run, piece, &job->model);
-    name_types(&job->model);
-    snprintf(job->model.folder, sizeof job->model.folder, "%s", run->folder);
+    mf_engine_model(run, piece, &job->model);
     snprintf(job->before, sizeof job->before, "../../%04llu/%02zu",
              (unsigned long long)piece->number - 1, piece->replica + 1);
     const enum status status = make(job, folder);

@@ -97,12 +97,16 @@ static void print_control(const struct export_job *job, FILE *stream) {
             cutoff, cutoff);
 }
 
-static enum status write(const struct export_job *job) {
+static enum status write_tables(const struct export_job *job) {
     TRY(mf_export_file(job, "TABLE", print_table));
-    if (job->grids.curves > 1) {
-        TRY(mf_export_file(job, "TABLE_lower", print_lower));
-        TRY(mf_export_file(job, "TABLE_upper", print_upper));
-    }
+    if (job->grids.curves == 1)
+        return STATUS_OK;
+    TRY(mf_export_file(job, "TABLE_lower", print_lower));
+    return mf_export_file(job, "TABLE_upper", print_upper);
+}
+
+static enum status write(const struct export_job *job) {
+    TRY(write_tables(job));
     TRY(mf_export_file(job, "FIELD", print_field));
     TRY(mf_export_file(job, "CONFIG", print_config));
     return mf_export_file(job, "CONTROL", print_control);
@@ -128,6 +132,7 @@ const struct export_engine mf_export_dl_poly = {
     .max_types = COMPOSITION_MAX_TYPES,
     .one_cutoff = true,
     .pair_name = name_pair,
+    .tables = write_tables,
     .write = write,
     .explain = explain,
 };

@@ -18,7 +18,7 @@ static const struct export_engine *const engines[] = {EXPORT_ENGINES(EXPORT_LIST
 
 enum { MAX_ENGINES = 16 };
 
-static enum status find_engine(const char *name, const struct export_engine **engine) {
+enum status mf_export_find(const char *name, const struct export_engine **engine) {
     const char *names[MAX_ENGINES];
     char hint[256];
     size_t count = 0;
@@ -362,7 +362,7 @@ enum status mf_export_run(const struct export_request *request) {
     struct export_model *model = NULL;
     struct export_job *job = NULL;
     const struct export_engine *engine;
-    TRY(find_engine(request->engine, &engine));
+    TRY(mf_export_find(request->engine, &engine));
     NEW_ARRAY(model, 1);
     NEW_ARRAY(job, 1);
     CHECK(mf_export_model_read(model, request->from));

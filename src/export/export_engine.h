@@ -73,6 +73,7 @@ struct export_engine {
     bool molecules;                               ///< bonds, angles and dihedrals are written, too
     bool many_body;                               ///< energies of local densities, likewise
     enum status (*check)(struct export_job *job); ///< before anything is written; NULL: nothing
+    enum status (*tables)(const struct export_job *job); ///< write those of pairs alone
     enum status (*write)(const struct export_job *job);
     /// What a person should know of the thermostat, for the README.
     void (*explain)(const struct export_job *job, FILE *stream);
@@ -112,6 +113,9 @@ struct export_request {
 /// or an export that was changed since; IO; NO_MEMORY; with `project` as mf_export_project. Nothing
 /// is written before all was read and checked. Tested: cli/test_export.
 enum status mf_export_run(const struct export_request *request) MUST_USE;
+
+/// The engine of a name. Fails: BAD_INPUT with the names that there are.
+enum status mf_export_find(const char *name, const struct export_engine **engine) MUST_USE;
 
 /// @name For the engines
 /// Write a file of the folder, whole or not at all. Fails: IO.

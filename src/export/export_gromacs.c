@@ -375,6 +375,7 @@ const struct export_engine mf_export_gromacs = {
     .pair_name = name_pair,
     .molecules = true,
     .has_law = has_law,
+    .tables = write_tables,
     .write = write,
     .explain = explain,
 };

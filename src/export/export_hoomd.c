@@ -141,6 +141,7 @@ const struct export_engine mf_export_hoomd = {
     .max_types = COMPOSITION_MAX_TYPES,
     .molecules = true,
     .has_law = has_law,
+    .tables = mf_export_script_tables,
     .write = write,
     .explain = explain,
 };

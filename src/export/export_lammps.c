@@ -333,8 +333,12 @@ static void print_input(const struct export_job *job, FILE *stream) {
     fprintf(stream, "run ${steps}\n");
 }
 
+static enum status write_table(const struct export_job *job) {
+    return mf_export_file(job, "mesofit.table", mf_export_lammps_print_table);
+}
+
 static enum status write(const struct export_job *job) {
-    TRY(mf_export_file(job, "mesofit.table", mf_export_lammps_print_table));
+    TRY(write_table(job));
     TRY(mf_export_file(job, "data.mesofit", mf_export_lammps_print_data));
     TRY(mf_export_lammps_write_densities(job));
     return mf_export_file(job, "in.mesofit", print_input);
@@ -435,6 +439,7 @@ const struct export_engine mf_export_lammps = {
     .many_body = true,
     .has_law = mf_export_lammps_has_law,
     .check = mf_export_lammps_check,
+    .tables = write_table,
     .write = write,
     .explain = explain,
 };

@@ -176,9 +176,8 @@ static enum status write_one(const struct printed *what, const char *name, bool 
     return mf_output_commit(&output);
 }
 
-enum status mf_export_script_files(const struct export_job *job, double shift) {
-    struct printed what = {.job = job, .shift = shift};
-    TRY(write_one(&what, "start.txt", true));
+enum status mf_export_script_tables(const struct export_job *job) {
+    struct printed what = {.job = job};
     for (int curve = 0; curve < job->grids.curves; curve++)
         for (what.pair = 0; what.pair < job->grids.pairs; what.pair++) {
             char pair[COMPOSITION_PAIR_NAME_SIZE], name[2 * COMPOSITION_PAIR_NAME_SIZE];
@@ -189,6 +188,12 @@ enum status mf_export_script_files(const struct export_job *job, double shift) {
             TRY(write_one(&what, name, false));
         }
     return STATUS_OK;
+}
+
+enum status mf_export_script_files(const struct export_job *job, double shift) {
+    const struct printed what = {.job = job, .shift = shift};
+    TRY(write_one(&what, "start.txt", true));
+    return mf_export_script_tables(job);
 }
 
 static void print_pairs(const struct export_job *job, FILE *stream) {

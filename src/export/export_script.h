@@ -5,8 +5,10 @@
 
 #include "export/export_engine.h"
 
-/// Write start.txt (type, position, velocity) and for each pair type and curve A-B.txt, rows r, Φ,
-/// F. Fails: IO.
+/// Write for each pair type and curve A-B.txt, rows r, Φ, F. Fails: IO.
+enum status mf_export_script_tables(const struct export_job *job) MUST_USE;
+
+/// The same, and start.txt: type, position, velocity. Fails: IO.
 /// @param[in] shift  what is taken off positions, as a share of the box
 enum status mf_export_script_files(const struct export_job *job, double shift) MUST_USE;
 

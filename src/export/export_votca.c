@@ -43,6 +43,7 @@ const struct export_engine mf_export_votca = {
                 "lammps A-A.pot A-A.table\n",
     .verified = "Such files were checked against the format that VOTCA reads, and not run.",
     .max_types = COMPOSITION_MAX_TYPES,
+    .tables = write,
     .write = write,
     .explain = explain,
 };

@@ -135,8 +135,8 @@ static enum status advance(struct inversion *inversion, struct inverse_step *ste
     bool converged;
     course->has_other = course->most_probable = false;
     TRY(rule->update(inversion, own));
-    mf_inversion_history_add(&inversion->history, first->replicas.counts.mean,
-                             first->target.counts, first->target.unit);
+    mf_inversion_history_add(&inversion->history, first->replicas.counts.mean, first->target.counts,
+                             first->target.unit);
     TRY(mf_inversion_course_accept(inversion, kept));
     converged = mf_inversion_has_converged(inversion, *kept);
     if (converged)

@@ -31,6 +31,8 @@ struct engine_settings {
     int kind;                     ///< enum engine_kind
     char input[FIELD_TEXT_SIZE];  ///< of LAMMPS, as its user has written it; "": one is written
     char frames[FIELD_TEXT_SIZE]; ///< trajectory that a command leaves
+    int tables;                   ///< in whose form a command has them, too:
+                                  ///< mf_sampling_engine_tables; 0: nobody's
     double time_step;             ///< of an input that is written; 0: that of the scene [τ]
     int64_t steps;                ///< time steps of what counts as a sweep
     int64_t at_once;              ///< pieces that run side by side; 0: as many as threads
@@ -40,6 +42,7 @@ struct engine_settings {
 
 extern const struct field mf_sampling_engine_fields[]; ///< of struct engine_settings
 extern const char *const mf_sampling_engine_kinds[];   ///< in the order of enum engine_kind
+extern const char *const mf_sampling_engine_tables[];  ///< "none", then engines of `export`
 
 /// What a replica asks for: frames of the canonical ensemble. Borrowed.
 struct engine_piece {

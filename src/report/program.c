@@ -163,8 +163,10 @@ static enum status assess(const char *name, int state, char *text) {
         return mf_status_fail(STATUS_IO, "%s was ended by signal %d", name, WTERMSIG(state));
     if (WEXITSTATUS(state) == EXIT_NOT_FOUND)
         return mf_status_fail(STATUS_IO, "%s is not installed", name);
-    return mf_status_fail(STATUS_IO, "%s failed: %s", name,
-                          text[0] ? last_line(text) : "no reason");
+    if (text[0])
+        return mf_status_fail(STATUS_IO, "%s failed: %s", name, last_line(text));
+    return mf_status_fail(STATUS_IO, "%s ended with exit code %d and said nothing", name,
+                          WEXITSTATUS(state));
 }
 
 /// Stop it, with the programs that it has started: those of MPI are told first, as they have others

@@ -123,8 +123,8 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
                               "out");
             continue;
         }
-        // Of some pairs alone: whether the others are known is seen later (defaults/fit_check). What
-        // is missing may be what a wrong name was to be.
+        // Of some pairs alone: whether the others are known is seen later (defaults/fit_check).
+        // What is missing may be what a wrong name was to be.
         struct json_object child =
             mf_json_child(object, key[pair] ? key[pair] : name[pair], known && !any);
         target->has_g[pair] = child.item != NULL;
@@ -304,13 +304,12 @@ static bool find_table(const struct target_files *files, int kind, size_t pair,
     char name[COMPOSITION_PAIR_NAME_SIZE];
     if (pair >= target->pairs)
         return false;
-    *table = (struct target_table){
-        .part = pair,
-        .first = pair * bins,
-        .count = target->has_g[pair] ? bins : 0,
-        .places = 1,
-        .place = {"r[lambda]"},
-        .beside = true};
+    *table = (struct target_table){.part = pair,
+                                   .first = pair * bins,
+                                   .count = target->has_g[pair] ? bins : 0,
+                                   .places = 1,
+                                   .place = {"r[lambda]"},
+                                   .beside = true};
     if (memcmp(target->given + table->first, target->g + table->first, bins * sizeof(double)) != 0)
         table->given = target->given + table->first;
     mf_composition_pair_name(&files->composition, (int)pair, name);

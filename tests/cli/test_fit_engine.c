@@ -270,6 +270,39 @@ static void test_what_is_wrong_with_an_engine_is_said(void **state) {
     assert_non_null(strstr(result.err, "no-such-engine"));
 }
 
+/// The tables of a piece, as `export` writes them for the engine that the command drives.
+static void test_tables_in_the_form_of_another_engine(void **state) {
+    static const struct {
+        const char *tables, *file;
+    } cases[] = {{"lammps", "mesofit.table"}, {"hoomd", "A-A.txt"},         {"espresso", "A-A.txt"},
+                 {"openmm", "A-A.txt"},       {"gromacs", "table_A_A.xvg"}, {"dl_poly", "TABLE"},
+                 {"votca", "A-A.pot"}};
+    write_coarse(*state, "coarse.json");
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char tables[64], path[64];
+        snprintf(tables, sizeof tables, "\"steps\": 20, \"tables\": \"%s\"", cases[k].tables);
+        small_inputs_change(*state, "coarse.json", "\"steps\": 20", tables);
+        RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later", "--force");
+        run_program_assert_code(&result, 0);
+        snprintf(path, sizeof path, "out/engine/0001/01/%s", cases[k].file);
+        if (!is_there(path))
+            fail_msg("%s has no %s", cases[k].tables, path);
+        small_inputs_change(*state, "coarse.json", tables, "\"steps\": 20");
+    }
+    // Rows of OpenMM's, of which the first is that of potential.tsv.
+    char *own = temporary_folder_read("out/engine/0001/01/potential.tsv");
+    small_inputs_change(*state, "coarse.json", "\"steps\": 20",
+                        "\"steps\": 20, \"tables\": \"openmm\"");
+    RUN_PROGRAM(&result, "fit", "coarse.json", "-o", "out", "--engine", "later", "--force");
+    char *other = temporary_folder_read("out/engine/0001/01/A-A.txt");
+    double r, phi, force, own_r, own_phi, own_force;
+    assert_int_equal(sscanf(strchr(other, '\n'), "%lf %lf %lf", &r, &phi, &force), 3);
+    assert_int_equal(sscanf(strchr(own, '\n'), "%lf %lf %lf", &own_r, &own_phi, &own_force), 3);
+    assert_true(fabs(own_phi - (phi - force * (own_r - r))) < 0.01 * own_phi);
+    free(own);
+    free(other);
+}
+
 static void refuse(void *state, const char *from, const char *to, const char *command,
                    const char *word) {
     const char *words[] = {word, NULL};
@@ -300,6 +333,8 @@ static void test_wrong_settings_are_refused(void **state) {
     }
     refuse(*state, ", \"frames\": \"frames.extxyz\"", "", COMMAND, "engine.frames: missing");
     refuse(*state, "\"steps\": 20", "\"input\": \"in.lmp\"", COMMAND, "engine.input");
+    refuse(*state, "\"name\": \"command\", \"frames\": \"frames.extxyz\"",
+           "\"name\": \"lammps\", \"tables\": \"openmm\"", COMMAND, "engine.tables");
     refuse(*state, "\"name\": \"auto\", " PLAN, "\"name\": \"cma-es\"", COMMAND,
            "it samples for inversions alone");
     refuse(*state, "\"steps\": 20", "\"types\": {\"1 2; shell\": \"A\"}", COMMAND,
@@ -470,6 +505,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_broken_samples_are_waited_for_again, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_what_is_wrong_with_an_engine_is_said, enter,
+                                        small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_tables_in_the_form_of_another_engine, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_wrong_settings_are_refused, enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_lammps_inputs_that_cannot_be, enter,

@@ -215,8 +215,8 @@ static void test_pairs_without_a_target_are_known(void **state) {
                         "{\"types\": {\"A\": 150, \"B\": 100}}");
     small_inputs_change(*state, "run.json", "{\"file\": \"truth/rdf.tsv\"}",
                         "{\"A-B\": {\"file\": \"mixture/rdf_A-B.tsv\"}}");
-    small_inputs_change(*state, "run.json", "\"unknowns\": {\"potential\": {\"truth\": " TRUTH "}},",
-                        "");
+    small_inputs_change(*state, "run.json",
+                        "\"unknowns\": {\"potential\": {\"truth\": " TRUTH "}},", "");
     small_inputs_change(*state, "run.json", KNOWN, "\"known\": " LAWS("{\"law\": \"none\"}"));
     small_inputs_change(*state, "run.json", METHOD,
                         "\"unknowns\": {\"potential\": {\"truth\": {\"A-A\": {\"law\": \"none\"}, "
