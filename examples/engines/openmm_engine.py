@@ -12,7 +12,7 @@ import numpy
 import openmm
 
 MASS = {"A": 18.015}  # of each type [u]
-TIME_STEP = 0.01  # ps
+TIME_STEP = 0.005  # ps
 PLATFORM = "Reference"  # "CUDA", "OpenCL" or "CPU" where there is one
 
 GAS = 8.31446261815324e-3  # kJ/mol/K

@@ -183,6 +183,15 @@ static void find_inefficiencies(struct inversion_state *state, struct inversion_
     section->inefficiency = section->known_count > 0 ? sum / (double)section->known_count : 1;
 }
 
+/// Bins of a section that have a target.
+static double count_told(const struct inversion_state *state,
+                         const struct inversion_section *section) {
+    double told = 0;
+    for (size_t n = section->bin; n < section->bin + section->bins; n++)
+        told += isfinite(state->target.unit[n]);
+    return told;
+}
+
 /// Mean over the bins of a section of the variance of their target, in its units.
 static double mean_target_variance(const struct inversion_state *state,
                                    const struct inversion_section *section) {
@@ -191,14 +200,14 @@ static double mean_target_variance(const struct inversion_state *state,
         if (state->grid.seen[a])
             sum += mf_inversion_target_variance(state, a) /
                    pow(state->target.unit[state->grid.known_bin[a]], 2);
-    return sum / section->told;
+    return sum / count_told(state, section);
 }
 
 /// Of one section; returns its χ².
 static double assess(struct inversion_state *state, struct inversion_section *section) {
     const struct comoments *counts = &state->replicas.counts;
     const size_t *known_bin = state->grid.known_bin;
-    const double bins = section->told;
+    const double bins = count_told(state, section);
     const double mean = mean_target_variance(state, section);
     double sum = 0, own = 0, both = 0, whole = 0, alone = 0, followed = 0, seen = 0, wanted = 0;
     find_inefficiencies(state, section);

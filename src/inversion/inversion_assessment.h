@@ -10,7 +10,6 @@ struct inversion_section {
     int kind;                  ///< enum target_kind, or of mf_bonded_distribution_kind
     size_t bin, bins;          ///< the first one among all, and how many there are
     size_t known, known_count; ///< the same of those that are known
-    double told;               ///< bins with a target: those of pairs that are looked for
     double peak;               ///< largest value of a group's target; of g 1
     double inefficiency;       ///< samples that count as one independent
     double rms, noise;         ///< of what the factors of targets do not explain, in peaks

@@ -127,7 +127,6 @@ static void enter_group(struct inversion_state *state, size_t g) {
     struct inversion_section *section = add_section(state, mf_group_kind_target(unknown->order));
     section->bins = unknown->bins.count;
     section->known_count = own->known;
-    section->told = (double)section->bins;
     section->peak = peak_of(own);
     state->groups[g] = (struct sampler_group){unknown->order, unknown->group, unknown->bins,
                                               unknown->order == INVERSE_LOCAL_DENSITY
@@ -144,8 +143,6 @@ void mf_inversion_count_targets(struct inversion_state *state) {
         struct inversion_section *section = add_section(state, TARGET_RDF);
         section->bins = grid->pair_bins;
         section->known_count = grid->pairs_known;
-        for (size_t pair = 0; pair < grid->pairs; pair++)
-            section->told += grid->known_of[pair] > 0 ? (double)grid->bins : 0;
         section->peak = 1;
     }
     set_pairs(state);

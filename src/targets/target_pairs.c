@@ -113,7 +113,9 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
     char name[COMPOSITION_MAX_PAIRS][COMPOSITION_PAIR_NAME_SIZE];
     const char *key[COMPOSITION_MAX_PAIRS];
     const bool known = mf_scene_pair_names_find(object, composition, key);
-    const bool any = mf_json_key(object, 0) != NULL;
+    bool some = false;
+    for (size_t pair = 0; pair < target->pairs && !fluid->intermolecular; pair++)
+        some = some || key[pair];
     for (size_t pair = 0; pair < target->pairs; pair++) {
         mf_composition_pair_name(composition, (int)pair, name[pair]);
         if (!mf_composition_has_pairs(composition, (int)pair)) {
@@ -126,7 +128,7 @@ static enum status read_pairs(struct target_pairs *target, struct json_object *o
         // Of some pairs alone: whether the others are known is seen later (defaults/fit_check).
         // What is missing may be what a wrong name was to be.
         struct json_object child =
-            mf_json_child(object, key[pair] ? key[pair] : name[pair], known && !any);
+            mf_json_child(object, key[pair] ? key[pair] : name[pair], known && !some);
         target->has_g[pair] = child.item != NULL;
         if (child.item)
             TRY(mf_target_rdf_read(&target->member[pair], &child, units, fluid->box->dimensions));

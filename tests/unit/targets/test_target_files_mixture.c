@@ -126,10 +126,24 @@ static void assert_refused(void **state, const char *members, const char *first,
     mf_target_files_clear(&t);
 }
 
+/// Whether the others are known is asked where the scene is (defaults/fit_check).
+static void test_targets_read_takes_some_pairs_alone(void **state) {
+    struct target_files t;
+    struct targets fitted, compared;
+    write_tables(state);
+    assert_ok(read(state, AA ", " BB, &t));
+    mf_target_files_targets(&t, false, &fitted, &compared);
+    assert_int_equal(fitted.target[TARGET_RDF].count, 3 * BINS);
+    for (int pair = 0; pair < 3; pair++) {
+        assert_int_equal(mf_targets_have_pair(&fitted, (size_t)pair), pair != 1);
+        assert_int_equal(isnan(fitted.target[TARGET_RDF].value[pair * BINS + 2]), pair == 1);
+    }
+    mf_target_files_clear(&t);
+}
+
 static void test_targets_read_refuses_a_mixture_that_is_not_complete(void **state) {
     write_tables(state);
     put(state, "other.tsv", "0.1 0 0\n0.3 0.5 0.1\n0.5 1.5 0.2\n0.7 1 0.3\n");
-    assert_refused(state, AA ", " BB, "a.json: target.rdf.A-B", "missing");
     assert_refused(state, "", "a.json: target.rdf.A-A", "missing");
     assert_refused(state, AA ", " AB ", " BB ", \"A-C\": {\"file\": \"aa.tsv\"}", "target.rdf.A-C",
                    "unknown pair");
@@ -230,6 +244,7 @@ int main(void) {
         TEST(test_targets_read_takes_pairs_in_any_order_and_either_name),
         TEST(test_targets_read_cuts_pairs_to_the_shortest),
         TEST(test_targets_read_tells_what_errors_are_of),
+        TEST(test_targets_read_takes_some_pairs_alone),
         TEST(test_targets_read_refuses_a_mixture_that_is_not_complete),
         TEST(test_targets_write_gives_a_mixture_back),
         TEST(test_targets_read_converts_every_pair_by_all_particles),
