@@ -3,6 +3,7 @@
 #include "defaults/fit_engine.h"
 #include "defaults/fit_scales.h"
 #include "inversion/inversion.h"
+#include "io/units_scale.h"
 #include "observe/stages.h"
 #include "problem/unknowns.h"
 #include "work/explain.h"
@@ -152,10 +153,19 @@ static enum status print_targets(const struct fit_file *state) {
     return mf_fit_print_state(state, &(struct target_sanity_listener){print_line, stdout});
 }
 
+static void end_nothing(void *frames) {
+    (void)frames;
+}
+
+/// In the place of another engine, whose command is not run: nothing is asked of it.
+static const struct sampling_engine unasked = {.end = end_nothing};
+
 /// The method refuses what it cannot fit when it is created.
 static enum status try_method(struct fit_file *fit) {
     for (size_t s = 0; s < mf_fit_states_count(fit); s++)
         mf_fit_states_at(fit, s)->problem.trial = true;
+    if (fit->engine.kind != ENGINE_NONE)
+        fit->problem.engine = &unasked;
     void *state = mf_memory_zeroed(1, fit->method->state_size);
     if (state == NULL)
         return STATUS_NO_MEMORY;
@@ -163,7 +173,7 @@ static enum status try_method(struct fit_file *fit) {
         fit->method->create(state, fit->method, &fit->problem, fit->method_parameters);
     fit->method->destroy(state);
     mf_memory_free(state);
-    return status;
+    return mf_units_convert_message(&fit->scene.units, status);
 }
 
 /// The field that says how many simulations a round hands out at once; NULL if the method has none.

@@ -149,13 +149,32 @@ static void test_a_disk_that_is_full(void **state) {
     assert_contains(result.err, "No space left on device");
 }
 
+/// A box that Monte Carlo of ours would have no room in, another engine may have: it is said in the
+/// units of the file, or not at all.
+static void test_a_box_that_is_small(void **state) {
+    small_inputs_change(*state, "run.json", "\"seed\": 4", "\"seed\": 4, \"units\": \"nm-ps\"");
+    small_inputs_change(*state, "run.json", "\"box\": [5, 5, 5]",
+                        "\"temperature\": 300, \"box\": [2.45, 2.45, 2.45]");
+    small_inputs_change(*state, "run.json", "{\"count\": 250}", "{\"count\": 30, \"mass\": 18}");
+    small_inputs_change(*state, "run.json", ", \"dissipative\": {\"law\": \"power\", \"sigma\": 3}",
+                        "");
+    assert_int_equal(system("sed 's/lambda/nm/' truth/rdf.tsv >rdf.tsv"), 0);
+    small_inputs_change(*state, "run.json", "truth/rdf.tsv", "rdf.tsv");
+    RUN_PROGRAM(&result, "fit", "run.json", "--engine", "true", "--explain");
+    run_program_assert_code(&result, 0);
+    small_inputs_change(*state, "run.json", "\"engine\": {" COMMAND "},", "");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "its shortest edge 2.45 nm must be at least 2.1 times the cutoff");
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, enter, small_inputs_leave)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_commands_that_fail),       TEST(test_commands_that_leave_nothing),
         TEST(test_frames_of_something_else), TEST(test_two_fits_in_one_folder),
-        TEST(test_a_disk_that_is_full),
+        TEST(test_a_disk_that_is_full),      TEST(test_a_box_that_is_small),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
