@@ -13,10 +13,8 @@ const char *const mf_sampling_engine_tables[] = {
 const struct field mf_sampling_engine_fields[] = {
     {"name", FIELD_CHOICE, MEMBER(kind), .choices = mf_sampling_engine_kinds,
      .initial = ENGINE_NONE, .unit = "", .help = "who samples; its command stands after --engine"},
-    {"input", FIELD_FILE, MEMBER(input), .unit = "",
-     .help = "LAMMPS input; none: one is written"},
-    {"frames", FIELD_TEXT, MEMBER(frames), .unit = "",
-     .help = "trajectory of the command"},
+    {"input", FIELD_FILE, MEMBER(input), .unit = "", .help = "LAMMPS input; none: one is written"},
+    {"frames", FIELD_TEXT, MEMBER(frames), .unit = "", .help = "trajectory of the command"},
     {"tables", FIELD_CHOICE, MEMBER(tables), .choices = mf_sampling_engine_tables, .initial = 0,
      .unit = "", .help = "as `export` writes them"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0, .minimum = 0, .maximum = DBL_MAX,

@@ -109,8 +109,7 @@ static int find_odd_pair(const struct target_files *files, const struct topology
         (size_t)topology->kind[0].count * (size_t)topology->kind[0].beads == topology->particles;
     int odd = -1, count = 0;
     for (size_t pair = 0; pair < target_files_rdf(files)->pairs; pair++)
-        if (target_files_rdf(files)->has_g[pair] &&
-            ends_beside_1(tail_of(files, pair), allowed)) {
+        if (target_files_rdf(files)->has_g[pair] && ends_beside_1(tail_of(files, pair), allowed)) {
             odd = (int)pair;
             count++;
         }

@@ -93,8 +93,7 @@ static void test_states_have_the_same_pairs(void **state) {
     small_inputs_write(*state, "run.json", mixtures, NULL, NULL);
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "out");
     run_program_assert_code(&result, 2);
-    assert_non_null(
-        strstr(result.err, "states.dilute: target.rdf: one state has g(r) of B-B"));
+    assert_non_null(strstr(result.err, "states.dilute: target.rdf: one state has g(r) of B-B"));
 }
 
 int main(void) {

@@ -83,7 +83,8 @@ static void test_program_run_says_why_when_the_program_fails(void **state) {
                  "no-such-program is not installed");
     assert_fails(run_shell("echo first; echo last; echo; exit 3", PROGRAM_EVERYTHING, text),
                  STATUS_IO, "sh failed: last");
-    assert_fails(run_shell("exit 3", PROGRAM_EVERYTHING, text), STATUS_IO, "sh ended with exit code 3 and said nothing");
+    assert_fails(run_shell("exit 3", PROGRAM_EVERYTHING, text), STATUS_IO,
+                 "sh ended with exit code 3 and said nothing");
     assert_fails(run_shell("kill -9 $$", PROGRAM_EVERYTHING, text), STATUS_IO,
                  "sh was ended by signal 9");
 }
