@@ -121,17 +121,18 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
     enum status status = STATUS_OK;
     struct motion_plan lags;
     *motion = (struct measured_motion){.plan = *plan, .temperature.columns = 1};
+    CHECK(copy_masses(motion, mapping));
+    motion->is_thermal = motion->mass && !mapping->broken && mapping->beads > 1;
+    motion->together = are_all(mapping);
     if (plan->leave_out || !are_timed(first))
-        return STATUS_OK;
+        goto done;
     motion->first_time = first[0].time;
     motion->interval =
         shorten(first[1].time - first[0].time,
                 (double)FLT_EPSILON * fmax(fabs(first[0].time), fabs(first[1].time)));
-    CHECK(copy_masses(motion, mapping));
     CHECK(mf_frame_motion_init(&motion->path, mapping->beads));
-    motion->is_thermal = motion->mass && !mapping->broken && mapping->beads > 1;
     motion->path.mass = motion->mass;
-    motion->path.together = are_all(mapping);
+    motion->path.together = motion->together;
     motion->path.interval = motion->interval;
     CHECK(choose_velocities(motion, first));
     CHECK(choose_lags(motion, first, &lags));
@@ -188,10 +189,9 @@ static double find_temperature(const struct measured_motion *motion,
             squares += mass[k] * beads->velocity[k][d] * beads->velocity[k][d];
         }
     }
-    const bool together = motion->path.together;
-    for (int d = 0; together && d < 3; d++)
+    for (int d = 0; motion->together && d < 3; d++)
         squares -= momentum[d] * momentum[d] / all;
-    const double freedom = 3 * ((double)beads->atoms - (together ? 1 : 0));
+    const double freedom = 3 * ((double)beads->atoms - (motion->together ? 1 : 0));
     // In u nm²/ps², which are kJ/mol.
     return squares / freedom * 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
 }
@@ -205,22 +205,27 @@ static enum status add_pairs(struct measured_motion *motion, const struct trajec
     return mf_etd_sample(etd, configuration);
 }
 
-enum status mf_measured_motion_add(struct measured_motion *motion,
-                                   const struct trajectory_frame *beads,
-                                   const struct configuration *configuration) {
-    if (!motion->begun)
-        return STATUS_OK;
+static enum status follow(struct measured_motion *motion, const struct trajectory_frame *beads,
+                          const struct configuration *configuration) {
     TRY(check_frame(motion, beads));
     const double *const state = mf_frame_motion_add(&motion->path, beads, configuration->fraction);
     if (state)
         mf_motion_add(&motion->motion, state, motion->plan.threads);
     TRY(add_pairs(motion, beads, configuration));
+    motion->last_time = beads->time;
+    motion->frames++;
+    return STATUS_OK;
+}
+
+enum status mf_measured_motion_add(struct measured_motion *motion,
+                                   const struct trajectory_frame *beads,
+                                   const struct configuration *configuration) {
+    if (motion->begun)
+        TRY(follow(motion, beads, configuration));
     if (beads->has_velocities && motion->is_thermal) {
         const double temperature = find_temperature(motion, beads);
         TRY(mf_sample_series_add(&motion->temperature, &temperature));
     }
-    motion->last_time = beads->time;
-    motion->frames++;
     return STATUS_OK;
 }
 

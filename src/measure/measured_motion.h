@@ -38,7 +38,8 @@ struct measured_motion {
     struct measured_motion_plan plan;
     bool begun;
     bool has_vacf;
-    bool is_thermal; ///< velocities tell the temperature, if there are any
+    bool is_thermal; ///< velocities tell the temperature, if there are any; with or without times
+    bool together;   ///< beads are all that moves: their momentum is conserved
     double interval; ///< between frames [ps]
     double first_time, last_time;
     size_t frames;
@@ -51,7 +52,8 @@ struct measured_motion {
 
 /// Prepare for frames whose first two are given, of beads in a box of that density, and boxes of at
 /// least that height.
-/// Nothing begins, and `begun` stays false, if that is wanted, or if the frames have no times.
+/// Nothing but the temperature begins, and `begun` stays false, if that is wanted, or if the frames
+/// have no times.
 /// Fails: BAD_INPUT for velocities that are asked for and missing, or a window that is too short;
 /// NO_MEMORY.
 enum status mf_measured_motion_begin(struct measured_motion *motion,

@@ -184,10 +184,7 @@ static void print_temperature(struct progress *progress, const struct measure_re
         mf_progress_print(
             progress,
             "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
-            result->mapping->broken ? " by parts of molecules"
-            : result->measured->slots > 0 && result->measured->slot[0].beads.has_velocities
-                ? ", since velocities are used with times alone (--file-time-step, no --static)"
-                : "");
+            result->mapping->broken ? " by parts of molecules" : "");
     else if (isnan(given))
         mf_progress_print(progress,
                           "T = %s K by the velocities of the beads; one that is known is given by "

@@ -80,7 +80,8 @@ static void test_units_that_cannot_be(void **state) {
     MEASURE("--file-units", "lj", "--static", "--range", "2", "--bins", "10");
     assert_contains(result.err, "a.dump: units lj: 1 is taken as 1 nm, 1 ps and 1 u, so that "
                                 "k_B T = 1 is 120.272 K");
-    assert_without("other units?");
+    assert_without("in a nm^3");
+    assert_contains(result.err, "warning: --file-units lj make velocities of 0.0");
     MEASURE("--file-units", "micro", "--static", "--range", "2", "--bins", "10");
     assert_contains(result.err, "warning: --file-units micro make 7.5e-12 beads in a nm^3: is the "
                                 "file in other units?");
@@ -113,11 +114,25 @@ static void test_what_the_first_frame_shows_is_told_once(void **state) {
     assert_null(strstr(first + 1, words));
 }
 
+/// A temperature takes no times.
 static void test_velocities_without_times(void **state) {
     write_argon(*state);
+    MEASURE("--file-units", "real", "--static", "--temperature", "400");
+    assert_contains(result.err,
+                    "warning: --temperature 400, but the velocities of the beads have ");
+    MEASURE("--file-units", "real", "--static", "--temperature", "302");
+    assert_without("warning: --temperature");
     MEASURE("--file-units", "real", "--static");
-    assert_contains(result.err, "unknown temperature, since velocities are used with times alone "
-                                "(--file-time-step, no --static)");
+    assert_contains(result.err, " K by the velocities of the beads");
+}
+
+static void test_a_temperature_that_nothing_tells(void **state) {
+    static const char frame[] = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp "
+                                "pp pp\n0 20\n0 20\n0 20\nITEM: ATOMS id type element x y z\n1 1 "
+                                "Ar 1 2 3\n2 1 Ar 9 2 3\n3 1 Ar 5 9 17\n";
+    small_inputs_write(*state, "a.dump", frame, NULL, NULL);
+    MEASURE("--file-units", "real", "--static");
+    assert_contains(result.err, "unknown temperature: give it by --temperature");
     RUN_PROGRAM(&result, "fit", "--target", "out", "-o", "fit");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "out/target.json: scene.temperature: missing: expected a number "
@@ -154,6 +169,7 @@ int main(void) {
                                        TEST(test_boxes_that_are_not_those_of_the_atoms),
                                        TEST(test_what_the_first_frame_shows_is_told_once),
                                        TEST(test_velocities_without_times),
+                                       TEST(test_a_temperature_that_nothing_tells),
                                        TEST(test_types_by_their_numbers),
                                        TEST(test_names_with_blanks_are_quoted)};
     return cmocka_run_group_tests(tests, NULL, NULL);
