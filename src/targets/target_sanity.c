@@ -444,5 +444,6 @@ enum status mf_target_sanity_report(const struct target_files *files, const stru
     mf_target_sanity_report_pressure(files, scene, listener);
     mf_target_sanity_report_normalisation(&files->normalisation, listener);
     mf_target_sanity_report_scales(files, scene, listener);
+    mf_target_sanity_report_measured(files, scene, listener);
     return STATUS_OK;
 }

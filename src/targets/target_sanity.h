@@ -54,7 +54,8 @@ void mf_target_sanity_report_groups(const struct target_files *files, const stru
 void mf_target_sanity_report_pressure(const struct target_files *files, const struct scene *scene,
                                       const struct target_sanity_listener *listener);
 
-/// Tell what was made of a table of g(r) without equal bins, or with a g slightly below 0.
+/// Tell what was made of a table of g(r) without equal bins, with a g slightly below 0, or that
+/// ends before its "cutoff". Tested: cli/test_target_sanity.
 void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
                                      const struct scene *scene,
                                      const struct target_sanity_listener *listener);
@@ -85,6 +86,11 @@ void mf_target_sanity_report_end(const struct target_rdf *target, const char *na
 /// does not begin at d k_B T/m within a factor of two. Tested: cli/test_doubts.
 void mf_target_sanity_report_scales(const struct target_files *files, const struct scene *scene,
                                     const struct target_sanity_listener *listener);
+
+/// Warn of a density or a temperature that is not that of a target.json of `measure` beside the
+/// table of g(r). Tested: cli/test_target_sanity.
+void mf_target_sanity_report_measured(const struct target_files *files, const struct scene *scene,
+                                      const struct target_sanity_listener *listener);
 
 /// Say a line.
 void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...)

@@ -51,6 +51,21 @@ static void warn_of_missing_rows(const struct target_rdf *target, const char *na
                           name, mf_rdf_bins_centre(&target->bins, 0) * length, unit, target->g[0]);
 }
 
+/// A potential that ends before its "cutoff" is not the one that was asked for.
+static void warn_of_missing_end(const struct target_rdf *target, const char *name,
+                                const struct scene *scene,
+                                const struct target_sanity_listener *listener) {
+    const double end = mf_rdf_bins_edge(&target->bins, target->bins.count);
+    const double cutoff = target->parameters.cutoff;
+    double length;
+    const char *unit = mf_target_sanity_length(scene, &length);
+    if (cutoff > end + target->bins.width)
+        mf_target_sanity_warn(listener,
+                              "mesofit: warning: target.%s.cutoff: %.4g %s is beyond the end of "
+                              "the table: g(r) and the potential end at %.4g %s",
+                              name, cutoff * length, unit, end * length, unit);
+}
+
 void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
                                      const struct scene *scene,
                                      const struct target_sanity_listener *listener) {
@@ -63,6 +78,7 @@ void mf_target_sanity_report_reading(const struct target_rdf *target, const char
                               "target %s: g is below 0 in %zu rows, by %.2g at most: taken as 0",
                               name, target->negative, -target->min);
     warn_of_missing_rows(target, name, scene, listener);
+    warn_of_missing_end(target, name, scene, listener);
     if (r->points == 0)
         return;
     if (r->assumed)

@@ -245,6 +245,53 @@ static void test_fit_warns_of_g_that_does_not_end_at_1(void **state) {
     }
 }
 
+static void test_fit_warns_of_a_cutoff_beyond_the_table(void **state) {
+    static const char *const cutoffs[] = {"0.9", "1.0", "1.5"};
+    static struct run_program_result result;
+    for (int k = 0; k < 3; k++) {
+        char with[64];
+        snprintf(with, sizeof with, ERRORS ", \"cutoff\": %s", cutoffs[k]);
+        small_inputs_write(*state, "run.json", water, ERRORS, with);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(
+            strstr(result.out, "target.rdf.cutoff: 1.5 nm is beyond the end of the table: g(r) and "
+                               "the potential end at 1 nm") != NULL,
+            k == 2);
+    }
+}
+
+/// Water beside which target.json says where it was measured.
+static void test_fit_warns_of_a_state_that_is_not_the_measured_one(void **state) {
+    static const struct {
+        const char *density, *temperature, *line;
+    } cases[] = {
+        {"32.566", "298", NULL},
+        {"32.3", "297", NULL},
+        {"30", "298", "at 30 nm^-3, not 32.57: is"},
+        {"32.566", "350", "at 350 K, not 298: is"},
+        {"3.2566", "24.85", "at 3.257 nm^-3, not 32.57, and at 24.85 K, not 298: is"},
+    };
+    static const char measured[] = "{\"units\": \"nm-ps\", \"target\": {\"rdf\": {\"file\": "
+                                   "\"rdf.tsv\"}}, \"scene\": {\"density\": HERE, "
+                                   "\"temperature\": THERE}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", water, NULL, NULL);
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        char half[512];
+        snprintf(half, sizeof half, "%.*s%s%s", (int)(strstr(measured, "HERE") - measured),
+                 measured, cases[k].density, strstr(measured, "HERE") + 4);
+        small_inputs_write(*state, "target.json", half, "THERE", cases[k].temperature);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        const char *const said = strstr(result.out, "target.json, beside the table of g(r), says");
+        assert_int_equal(said != NULL, cases[k].line != NULL);
+        if (said)
+            assert_non_null(strstr(said, cases[k].line));
+    }
+    assert_int_equal(unlink("target.json"), 0);
+}
+
 /// Gaussian-core particles have no packing that is too dense, but ten times the density asks for
 /// less than no fluctuations; hard spheres a thousandth of their close packing are a gas.
 static void test_fit_looks_at_densities_of_fluids_without_layers(void **state) {
@@ -543,6 +590,8 @@ int main(void) {
         TEST(test_fit_warns_of_a_table_that_begins_within_its_core),
         TEST(test_fit_warns_of_errors_in_per_cent),
         TEST(test_fit_warns_of_g_that_does_not_end_at_1),
+        TEST(test_fit_warns_of_a_cutoff_beyond_the_table),
+        TEST(test_fit_warns_of_a_state_that_is_not_the_measured_one),
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_names_demixing_where_the_integrals_say_so),
