@@ -8,6 +8,7 @@
 #include "problem/evaluate.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /// In a gas collisions are rare, and no pair may lose more than a tenth of its velocity a step.
@@ -254,12 +255,16 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
         // States of other densities have other particles in a box of that width.
         const bool joined = scene_has_molecules(&c->fit->scene.molecules) || c->fit->name[0] ||
                             c->fit->engine.kind != ENGINE_NONE;
+        const double own = joined && !said(c, "particles") ? c->count : particles;
+        char others[64] = "";
+        if (own != c->count)
+            snprintf(others, sizeof others, ", not the %.0f of the scene and of its verification",
+                     c->count);
         mf_fit_choice_note(
             c,
-            "method \"%s\": it finds the potential from g(r) by samples of %.0f particles, until "
+            "method \"%s\": it finds the potential from g(r) by samples of %.0f particles%s, until "
             "their g is known within %.2g; the target's is within %.2g",
-            method->name, joined && !said(c, "particles") ? c->count : particles, c->precision,
-            c->scales.noise);
+            method->name, own, others, c->precision, c->scales.noise);
         if (!joined)
             give_to_method(c, both ? "potential_particles" : "particles", particles);
         give_to_method(c, both ? "potential_precision" : "precision", c->precision);

@@ -84,6 +84,7 @@ static const struct column columns[] = {
     {"T", false, AT(temperature), "%.3f", 0, NULL},
     {"T_conf", false, AT(temperature_configurational), "%.3f", 0, NULL},
     {"p", false, AT(pressure), "%.4g", 0, NULL},
+    {"p_open", false, AT(pressure_left_open), "%.2g", 0, NULL},
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof columns[0] };
 

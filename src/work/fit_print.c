@@ -84,8 +84,9 @@ static enum status warn_of_range(const struct fit_file *fit,
         mf_target_sanity_warn(listener,
                               "mesofit: warning: target.rdf: %.0f others are within its range of "
                               "each bead, which makes the fit slow; within %.4g %s, beyond which g "
-                              "differs from 1 by less than %g or its noise, there are %.0f: end it "
-                              "there by \"cutoff\"",
+                              "differs from 1 by less than %g or its noise, there are %.0f; a "
+                              "\"cutoff\" there saves that time, and ends the potential, too: what "
+                              "its law would do beyond is then left open",
                               others, enough * length, unit, fit_scales_little, near);
     return STATUS_OK;
 }
