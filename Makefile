@@ -80,7 +80,9 @@ $(BUILD)/src/trajectory/unpack.o $(BUILD)/tests/unit/trajectory/test_trajectory_
     override CFLAGS += $(if $(ZLIB),-DHAS_ZLIB) $(if $(ZSTD),-DHAS_ZSTD)
 LIBRARY  = $(BUILD)/libmesofit.a
 LIVE     = $(BUILD)/live.a
-OF_LIBRARY = $(filter-out $(BUILD)/src/app/% $(BUILD)/src/live/%,$(OBJECTS))
+# In no archive of the build, so that a commit links what says its name anew, and no test.
+NAMED    = $(BUILD)/src/base/version.o
+OF_LIBRARY = $(filter-out $(BUILD)/src/app/% $(BUILD)/src/live/% $(NAMED),$(OBJECTS))
 PROGRAM  = $(BUILD)/mesofit
 VERSION := $(shell sed -n 's/^.define MESOFIT_VERSION "\(.*\)"/\1/p' include/mesofit.h)
 SONAME   = libmesofit.so.$(word 1,$(subst ., ,$(VERSION)))
@@ -101,9 +103,16 @@ $(LIBRARY) $(LIVE):
 	@echo "ar $@"
 	$(AT)ar rcs $@ $^
 
+# What this build calls itself, compiled again when that changes.
+NAME = $(BUILD)/version
+$(NAME): FORCE
+	@mkdir -p $(@D); src/base/version.sh >$@.now && { cmp -s $@.now $@ || cp $@.now $@; }
+$(NAMED): $(NAME)
+$(NAMED): override CFLAGS += -DMESOFIT_BUILD='"$(shell cat $(NAME))"'
+
 # No header of it reads trajectories, so that its users load no HDF5.
 SHARED_OBJECTS = $(sort $(filter-out $(H5MD:%.c=$(BUILD)/%.o),$(OF_LIBRARY)) \
-                 $(BUILD)/src/trajectory/format_h5md_without.o)
+                 $(BUILD)/src/trajectory/format_h5md_without.o $(NAMED))
 $(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	@echo "ld $@"
 	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined \
@@ -121,7 +130,7 @@ $(WHEEL_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 .PHONY: wheel-library
 wheel-library: $(WHEEL_LIBRARY)
 
-OF_PROGRAM = $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(LIVE) $(LIBRARY)
+OF_PROGRAM = $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(NAMED) $(LIVE) $(LIBRARY)
 WITH_MPI   = $(BUILD)/mpi/mesofit
 # Whether the program is linked with MPI: it is linked again when that changes.
 STAMP     = $(BUILD)/configuration
@@ -184,9 +193,9 @@ $(TESTS) $(STRESS): CFLAGS += -Itests
 $(TESTS:=.o) $(STRESS:=.o): CFLAGS += $(if $(SANITIZE),,-g0)
 $(CLI:=.o): CFLAGS += -O1
 $(filter $(BUILD)/tests/unit/live/%,$(UNIT)): $(LIVE)
-$(TESTS) $(STRESS): %: %.o $(SHARED_ARCHIVE) $(LIBRARY)
+$(TESTS) $(STRESS): %: %.o $(SHARED_ARCHIVE) $(LIBRARY) | $(NAMED)
 	@echo "ld $@"
-	$(AT)$(CC) $(LDFLAGS) $(STRIP_TEST) -o $@ $(filter %.o,$^) $(SHARED_ARCHIVE) $(filter $(LIVE),$^) $(LIBRARY) -lcmocka $(if $(filter $(LIVE),$^),$(LIVE_LIBS)) $(LDLIBS)
+	$(AT)$(CC) $(LDFLAGS) $(STRIP_TEST) -o $@ $(filter %.o,$^) $(NAMED) $(SHARED_ARCHIVE) $(filter $(LIVE),$^) $(LIBRARY) -lcmocka $(if $(filter $(LIVE),$^),$(LIVE_LIBS)) $(LDLIBS)
 
 .PHONY: test tests
 tests: all $(TESTS)
@@ -297,6 +306,7 @@ install: all
 	install -m 644 include/mesofit.h $(DESTDIR)$(PREFIX)/include
 	install -m 644 include/mesofit/*.h $(DESTDIR)$(PREFIX)/include/mesofit
 	install -m 644 $(LIBRARY) $(SHARED_LIBRARY) $(DESTDIR)$(LIBDIR)
+	ar rs $(DESTDIR)$(LIBDIR)/$(notdir $(LIBRARY)) $(NAMED)
 	ln -sf $(notdir $(SHARED_LIBRARY)) $(DESTDIR)$(LIBDIR)/$(SONAME)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libmesofit.so
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|' mesofit.pc.in \

@@ -28,8 +28,8 @@ SYSTEM = re.compile(r"^(ld-linux.*|lib(c|m|mvec|pthread|dl|rt|util|resolv)\.so.*
 
 
 def version() -> str:
-    header = (SOURCE / "include" / "mesofit.h").read_text()
-    return re.search(r'^#define MESOFIT_VERSION "(.*)"', header, re.M).group(1)
+    return subprocess.run([str(SOURCE / "src" / "base" / "version.sh")], capture_output=True,
+                          text=True, check=True).stdout.strip()
 
 
 def metadata() -> str:
@@ -142,8 +142,8 @@ def build_sdist(sdist_directory, config_settings=None):
             archive.add(HERE / own, f"{name}/{own}", filter=clean)
         for source in SOURCES:
             archive.add(SOURCE / source, f"{name}/source/{source}", filter=clean)
-        information = metadata().encode()
-        about = tarfile.TarInfo(f"{name}/PKG-INFO")
-        about.size = len(information)
-        archive.addfile(about, io.BytesIO(information))
+        for inside, text in (("PKG-INFO", metadata()), ("source/version", version())):
+            about = tarfile.TarInfo(f"{name}/{inside}")
+            about.size = len(text.encode())
+            archive.addfile(about, io.BytesIO(text.encode()))
     return path.name

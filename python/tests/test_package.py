@@ -3,6 +3,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -63,3 +64,53 @@ def test_archive_has_all_sources(tmp_path):
     done = subprocess.run([sys.executable, "-c", code], cwd=inside, capture_output=True, text=True,
                           check=True)
     assert done.stdout.strip() == backend.version()
+
+
+@pytest.fixture
+def clone(tmp_path):
+    """A clone of two files, and what runs Git in it."""
+    for file in ("include/mesofit.h", "src/base/version.sh"):
+        (tmp_path / file).parent.mkdir(parents=True)
+        shutil.copy(ROOT / file, tmp_path / file)
+
+    def git(*words):
+        return subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b.c", *words],
+                              cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+
+    git("init", "-q")
+    git("add", ".")
+    git("commit", "-qm", "one")
+    return tmp_path, git
+
+
+def says(place):
+    return subprocess.run([str(place / "src" / "base" / "version.sh")], check=True,
+                          capture_output=True, text=True).stdout.strip()
+
+
+def test_version_names_the_commit_between_releases(clone):
+    place, git = clone
+    release = re.search(r'MESOFIT_VERSION "(.*)"', (place / "include/mesofit.h").read_text())[1]
+    commit = git("rev-parse", "--short", "HEAD").strip()
+    assert says(place) == f"{release}+g{commit}"
+    git("tag", f"v{release}")
+    assert says(place) == release
+    (place / "include/mesofit.h").open("a").write("\n")
+    assert says(place) == f"{release}+dirty"
+    git("commit", "-qam", "two")
+    commit = git("rev-parse", "--short", "HEAD").strip()
+    assert says(place) == f"{release}+1.g{commit}"
+    (place / "include/mesofit.h").open("a").write("\n")
+    assert says(place) == f"{release}+1.g{commit}.dirty"
+    (place / "version").write_text("1.2.3+4.g5678")
+    assert says(place) == "1.2.3+4.g5678"
+
+
+def test_archive_without_a_clone_is_the_release(clone):
+    place, _ = clone
+    shutil.rmtree(place / ".git")
+    assert re.fullmatch(r"\d+\.\d+\.\d+", says(place))
+
+
+def test_version_is_one_of_python():
+    assert re.fullmatch(r"\d+(\.\d+)*(\+[a-z0-9]+(\.[a-z0-9]+)*)?", backend.version())

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "app/commands.h"
 
-#include "mesofit.h"
+#include "base/version.h"
 
 #include <string.h>
 
@@ -35,7 +35,7 @@ static void print_options(const struct command_option *option) {
 }
 
 void mf_command_print_help(void) {
-    printf("mesofit " MESOFIT_VERSION ": %s\n\nusage:\n", mf_command_purpose);
+    printf("mesofit %s: %s\n\nusage:\n", mf_version, mf_command_purpose);
     for (const struct command *const *command = mf_command_list; *command; command++)
         printf("  mesofit %-9s %-22s  %s\n", (*command)->name, (*command)->usage,
                (*command)->summary);

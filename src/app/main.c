@@ -7,7 +7,7 @@
 #include "base/ranks.h"
 #include "base/fields.h"
 #include "base/terminal.h"
-#include "mesofit.h"
+#include "base/version.h"
 #include "report/program.h"
 
 #include <errno.h>
@@ -112,7 +112,7 @@ static enum status act(int count, char **words) {
     if (count > 1 && strcmp(words[1], "help") == 0)
         return help(count, words);
     if (asks_for(count, words, "--version", "-V")) {
-        printf("mesofit " MESOFIT_VERSION "\n");
+        printf("mesofit %s\n", mf_version);
         return STATUS_OK;
     }
     if (count < 2) {

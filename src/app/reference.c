@@ -3,7 +3,7 @@
 
 #include "app/commands.h"
 #include "base/fields.h"
-#include "mesofit.h"
+#include "base/version.h"
 
 #include <ctype.h>
 #include <stdbool.h>
@@ -305,7 +305,7 @@ void mf_reference_print_markdown(FILE *stream, const struct topic *topics, size_
 }
 
 void mf_reference_print_man(FILE *stream, const struct topic *topics, size_t count) {
-    fprintf(stream, ".TH MESOFIT 1 \"\" \"mesofit " MESOFIT_VERSION "\" \"User Commands\"\n");
+    fprintf(stream, ".TH MESOFIT 1 \"\" \"mesofit %s\" \"User Commands\"\n", mf_version);
     man.heading(stream, 1, "Name");
     fprintf(stream, "mesofit \\- %s\n", mf_command_purpose);
     man.heading(stream, 1, "Synopsis");

@@ -3,9 +3,9 @@
 
 #include "base/memory.h"
 #include "base/nearest.h"
+#include "base/version.h"
 #include "dynamics/hybrid_step.h"
 #include "io/tracked_files.h"
-#include "mesofit.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -225,9 +225,9 @@ static void print_readme(const struct export_job *job, FILE *stream) {
     const struct export_units *units = &job->units;
     if (job->engine->versions)
         fprintf(stream, "%s\n\n", job->engine->versions);
-    fprintf(
-        stream, "%s, for %s\n\nWritten by mesofit " MESOFIT_VERSION " from %s. Run it here:\n\n",
-        model->title[0] ? model->title : "A result of mesofit", job->engine->title, model->folder);
+    fprintf(stream, "%s, for %s\n\nWritten by mesofit %s from %s. Run it here:\n\n",
+            model->title[0] ? model->title : "A result of mesofit", job->engine->title, mf_version,
+            model->folder);
     fprintf(stream, "%s\n",
             job->engine->commands_of ? job->engine->commands_of(job) : job->engine->commands);
     mf_export_dynamics_print(job, "", stream);

@@ -2,6 +2,7 @@
 #include "library/guard.h"
 
 #include "base/process_lock.h"
+#include "base/version.h"
 #include "mesofit.h"
 
 #include <assert.h>
@@ -52,7 +53,7 @@ const char *mesofit_message(void) {
 }
 
 const char *mesofit_version(void) {
-    return MESOFIT_VERSION;
+    return mf_version;
 }
 
 size_t mesofit_size_of(const char *name) {

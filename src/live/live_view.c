@@ -3,11 +3,11 @@
 
 #include "base/memory.h"
 #include "base/visible.h"
+#include "base/version.h"
 #include "io/json.h"
 #include "io/json_write.h"
 #include "io/text_file.h"
 #include "live/live_folder.h"
-#include "mesofit.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -79,7 +79,7 @@ static void publish_state(struct live_view *view) {
     write_path(writer, "folder", view->folder);
     mf_json_write_text(writer, "message", view->message);
     mf_json_write_integer(writer, "stays", view->stays);
-    mf_json_write_text(writer, "version", MESOFIT_VERSION);
+    mf_json_write_text(writer, "version", mf_version);
     mf_live_view_publish(view, LIVE_STATE, writer);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesofit.h"
+#include "base/version.h"
 #include "observe/kirkwood_buff.h"
 #include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
@@ -437,7 +437,7 @@ enum status mf_fit_output_summary(const struct fit_file *fit, const struct unkno
         mf_json_write_number(writer, "etd_cells_left_out",
                              (double)target_files_etd(&fit->files)->left_out);
     mf_json_write_number(writer, "seed", (double)fit->heading.seed);
-    mf_json_write_text(writer, "version", MESOFIT_VERSION);
+    mf_json_write_text(writer, "version", mf_version);
     mf_run_folder_file(folder, "summary.json", path);
     const enum status status = mf_json_write(writer, path);
     mf_json_writer_free(writer);

@@ -5,7 +5,7 @@
 #include "io/units.h"
 #include "base/memory.h"
 #include "base/statistics.h"
-#include "mesofit.h"
+#include "base/version.h"
 #include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 #include "problem/targets.h"
@@ -227,7 +227,7 @@ static enum status write_summary(const struct measure_result *result) {
         return status;
     }
     write_trajectories(result, writer);
-    mf_json_write_text(writer, "version", MESOFIT_VERSION);
+    mf_json_write_text(writer, "version", mf_version);
     return write_json(result, "summary.json", writer);
 }
 

@@ -2,11 +2,11 @@
 #include "work/simulate.h"
 
 #include "base/memory.h"
+#include "base/version.h"
 #include "scene/heading.h"
 #include "scene/scene.h"
 #include "scene/scene_doubts.h"
 #include "io/checkpoint.h"
-#include "mesofit.h"
 #include "report/progress.h"
 #include "work/explain.h"
 #include "work/simulate_observables.h"
@@ -245,7 +245,7 @@ static enum status write_summary(const struct run *run, enum status how, double 
     write_remarks(run, writer);
     mf_simulate_observables_write_summary(&run->observables, &results, writer);
     mf_json_write_number(writer, "seed", (double)run->heading.seed);
-    mf_json_write_text(writer, "version", MESOFIT_VERSION);
+    mf_json_write_text(writer, "version", mf_version);
     mf_run_folder_file(&run->folder, "summary.json", path);
     const enum status status = mf_json_write(writer, path);
     mf_json_writer_free(writer);
