@@ -39,6 +39,13 @@ def test_states_make_a_run_file(schema):
     assert fault(schema, {"states": {"hot": state}, "secne": {}}) != ""
 
 
+def test_what_no_file_may_have_is_refused(schema):
+    for wrong in ({"box": [3, -3, 3]}, {"box": [0, 3, 3]}, {"particles": {"count": 5, "mass": 0}},
+                  {"particles": {"types": {"A": 5, "B": 5}, "mass": {"A": -1, "B": 1}}}):
+        assert fault(schema, wrong) != "", wrong
+    assert fault(schema, {"box": [3, 3, 3], "particles": {"count": 5, "mass": 18}}) == ""
+
+
 def test_files_of_the_repository_are_valid(schema):
     read = []
     for path in FILES:

@@ -187,12 +187,16 @@ static void print_topic(const struct topic *topic) {
     print_objects(topic->name);
 }
 
+static bool is_named(const struct topic *topic, const char *name) {
+    return strcmp(topic->group, name) == 0 || strcmp(topic->name, name) == 0;
+}
+
 /// The topics of that name, and all of a group of that name; false if there is none.
 static bool print_named(const struct topic *topics, size_t count, const char *name) {
     bool found = false;
-    char target[64];
+    char target[80];
     for (size_t k = 0; k < count; k++)
-        if (strcmp(topics[k].group, name) == 0 || strcmp(topics[k].name, name) == 0) {
+        if (is_named(&topics[k], name)) {
             printf("%s", found ? "\n" : "");
             print_topic(&topics[k]);
             found = true;
@@ -205,6 +209,59 @@ static bool print_named(const struct topic *topics, size_t count, const char *na
                    "%s`.\n",
                    name, target);
     return found;
+}
+
+/// The topic or group of an object by its path, "rdf-target" of "run.target.rdf"; false if there is
+/// none.
+static bool find_object(const struct topic *topics, size_t count, const char *path, char name[64]) {
+    struct topic_object objects[DESCRIBE_MAX_OBJECTS];
+    char outer[256], home[64];
+    const char *const dot = strrchr(path, '.');
+    snprintf(name, 64, "%s", path);
+    if (dot == NULL)
+        return true;
+    snprintf(outer, sizeof outer, "%.*s", (int)(dot - path), path);
+    if (!find_object(topics, count, outer, home))
+        return false;
+    for (size_t k = 0; k < count; k++) {
+        const size_t own =
+            is_named(&topics[k], home) ? mf_describe_objects(topics[k].name, objects) : 0;
+        for (size_t o = 0; o < own; o++)
+            if (strcmp(objects[o].key, dot + 1) == 0) {
+                snprintf(name, 64, "%s", objects[o].topic);
+                return true;
+            }
+    }
+    return false;
+}
+
+/// The number at the end of a path, "scene.box", of each topic that has it; false if there is none.
+static bool print_field(const struct topic *topics, size_t count, const char *path) {
+    bool found = false;
+    char outer[256], home[64];
+    const char *const dot = strrchr(path, '.');
+    if (dot == NULL)
+        return false;
+    snprintf(outer, sizeof outer, "%.*s", (int)(dot - path), path);
+    if (!find_object(topics, count, outer, home))
+        return false;
+    for (size_t k = 0; k < count; k++)
+        for (size_t t = 0; is_named(&topics[k], home) && topics[k].tables[t]; t++)
+            for (const struct field *field = topics[k].tables[t]; field->name; field++)
+                if (strcmp(field->name, dot + 1) == 0) {
+                    const struct field alone[] = {*field, FIELD_END};
+                    printf("%s (%s)\n", topics[k].name, topics[k].group);
+                    mf_fields_describe(alone, stdout);
+                    found = true;
+                }
+    return found;
+}
+
+/// What stands at a path, a number or an object; false if there is nothing.
+static bool print_path(const struct topic *topics, size_t count, const char *path) {
+    char name[64];
+    return print_field(topics, count, path) ||
+           (find_object(topics, count, path, name) && print_named(topics, count, name));
 }
 
 /// The whole reference, as `format` wants it.
@@ -279,7 +336,7 @@ static enum status run(const struct command_line *line) {
         print_index(topics, count);
         return STATUS_OK;
     }
-    if (print_named(topics, count, line->files[0]))
+    if (print_path(topics, count, line->files[0]))
         return STATUS_OK;
     for (size_t k = 0; k < count; k++)
         names[k] = topics[k].name;

@@ -34,6 +34,16 @@ static void print_options(const struct command_option *option) {
         printf("  %-16s  %s\n", mf_command_option_text(option, text), option->help);
 }
 
+void mf_command_print_first(void) {
+    printf(
+        "mesofit %s: %s\n\nfrom a trajectory to a potential in your engine:\n"
+        "  mesofit measure traj.xtc -s conf.gro --temperature 298 -o target\n"
+        "  mesofit fit --target target -o fit\n"
+        "  mesofit export fit --engine lammps -o lammps\n\n"
+        "`mesofit --help` lists all commands and options, `mesofit COMMAND --help` those of one.\n",
+        mf_version, mf_command_purpose);
+}
+
 void mf_command_print_help(void) {
     printf("mesofit %s: %s\n\nusage:\n", mf_version, mf_command_purpose);
     for (const struct command *const *command = mf_command_list; *command; command++)

@@ -18,6 +18,9 @@ extern const char mf_command_purpose[], mf_command_exit_codes[];
 
 void mf_command_print_help(void);
 
+/// What the program says without words: the three commands of a first day.
+void mf_command_print_first(void);
+
 /// What a single subcommand takes.
 void mf_command_print_own_help(const struct command *command);
 

@@ -116,8 +116,8 @@ static enum status act(int count, char **words) {
         return STATUS_OK;
     }
     if (count < 2) {
-        mf_command_print_help();
-        return mf_status_fail(STATUS_BAD_INPUT, "give one of these commands");
+        mf_command_print_first();
+        return mf_status_fail(STATUS_BAD_INPUT, "give a command");
     }
     mf_program_begin_again(words);
     return run((size_t)count - 1, (const char *const *)words + 1);

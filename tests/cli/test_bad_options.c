@@ -98,6 +98,18 @@ static void test_help_is_on_stdout_when_asked_for(void **state) {
     free(own);
 }
 
+static void test_without_words_it_shows_a_first_day(void **state) {
+    static struct run_program_result result;
+    static const char *const words[] = {"mesofit measure ", "mesofit fit ", "mesofit export ",
+                                        "mesofit --help"};
+    (void)state;
+    run_program(&result, &(struct run_program_how){0}, (const char *const[]){NULL});
+    run_program_assert_code(&result, 2);
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+        assert_contains(result.out, words[k]);
+    assert_true(run_program_lines(result.out) < 10);
+}
+
 /// Permissions mean nothing to root: a regular file in the way and /proc mean something to all.
 static void test_unwritable_folders_are_refused_before_any_step(void **state) {
     static struct run_program_result result;
@@ -228,6 +240,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_bad_lines_are_refused_with_a_hint),
         TEST(test_help_is_on_stdout_when_asked_for),
+        TEST(test_without_words_it_shows_a_first_day),
         TEST(test_unwritable_folders_are_refused_before_any_step),
         TEST(test_full_disk_is_an_error_and_leaves_nothing_half_written),
         cmocka_unit_test_setup_teardown(test_full_file_system_is_an_error_wherever_it_is_met,
