@@ -21,6 +21,8 @@
 # make lint           formatting, static analysis, layers, names, licence lines, lengths
 # make standard-set   fits the standard set by defaults: one table, one figure (an hour; runs/standard-set)
 # make results RUN=runs/…   runs what the README there asks for, and writes numbers and figures into it
+# make number NUMBER=0.3.0   the next release has this number (RELEASING.md)
+# make release        source archive, wheel and Debian packages of what is committed, tried
 # make bench          speed of the engine on this machine, to tests/bench/results
 # make WERROR=1 …     warnings are errors
 # make VERBOSE=1 …    shows the whole commands
@@ -120,15 +122,22 @@ $(SHARED_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	@ln -sf $(@F) $(BUILD)/$(SONAME)
 	@ln -sf $(SONAME) $(BUILD)/libmesofit.so
 
-# The same for a wheel: what it needs lies beside it.
+# The same for a wheel: what it needs lies beside it. The program has neither HDF5 nor the live view there.
 WHEEL_LIBRARY = $(BUILD)/wheel/$(SONAME)
+WHEEL_PROGRAM = $(BUILD)/wheel/mesofit
+IN_WHEEL = -Wl,-rpath,'$$ORIGIN' -Wl,--disable-new-dtags -Wl,--strip-debug
 $(WHEEL_LIBRARY): $(SHARED_OBJECTS) src/library/exports.map
 	@mkdir -p $(@D)
 	@echo "ld $@"
-	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined -Wl,-rpath,'$$ORIGIN' -Wl,--disable-new-dtags \
-	    -Wl,--strip-debug -Wl,--version-script=src/library/exports.map $(LDFLAGS) -o $@ $(filter %.o,$^) $(LDLIBS)
-.PHONY: wheel-library
-wheel-library: $(WHEEL_LIBRARY)
+	$(AT)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined $(IN_WHEEL) \
+	    -Wl,--version-script=src/library/exports.map $(LDFLAGS) -o $@ $(filter %.o,$^) $(LDLIBS)
+$(WHEEL_PROGRAM): $(sort $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(BUILD)/src/live/live_server_none.o \
+    $(filter-out %/live_server.o %/live_assets.o,$(filter $(BUILD)/src/live/%,$(OBJECTS))) $(SHARED_OBJECTS))
+	@mkdir -p $(@D)
+	@echo "ld $@"
+	$(AT)$(CC) $(IN_WHEEL) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+.PHONY: wheel-files
+wheel-files: $(WHEEL_LIBRARY) $(WHEEL_PROGRAM)
 
 OF_PROGRAM = $(filter $(BUILD)/src/app/%,$(OBJECTS)) $(NAMED) $(LIVE) $(LIBRARY)
 WITH_MPI   = $(BUILD)/mpi/mesofit
@@ -326,6 +335,13 @@ check-install: all
 
 lint: $(LIBRARY) $(LIVE)
 	tests/tools/lint.sh $(LIBRARY) $(LIVE)
+
+# A release, and its number: RELEASING.md.
+.PHONY: number release
+number:
+	packaging/number.sh "$(NUMBER)"
+release:
+	packaging/release.sh
 
 .PHONY: standard-set
 standard-set: $(PROGRAM)

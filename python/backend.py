@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Builds wheels and source archives, by make and the standard library alone: what pip calls (PEP 517).
 
-A wheel holds the shared library and what it needs beside the C library (GSL, NLopt, cJSON, expat, libgomp),
-found by the run path $ORIGIN. An archive has the sources of the library in `source`; the tests are in
-clones alone.
+What is compiled is the Makefile's; another backend would say it a second time. A wheel holds the shared library, the
+program and what both need beside the C library (GSL, NLopt, cJSON, expat, zlib, zstd, libgomp) with their licences, found
+by the run path $ORIGIN; its name says which C library it asks for (PEP 600). An archive has the sources of the
+library in `source`; the tests are in clones alone.
 """
 
 from __future__ import annotations
@@ -15,7 +16,6 @@ import os
 import re
 import subprocess
 import sys
-import sysconfig
 import tarfile
 import zipfile
 from pathlib import Path
@@ -23,8 +23,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE / "source" if (HERE / "source" / "Makefile").exists() else HERE.parent
 
-#: Libraries of every Linux, which no wheel may bring along.
-SYSTEM = re.compile(r"^(ld-linux.*|lib(c|m|mvec|pthread|dl|rt|util|resolv)\.so.*)$")
+#: Libraries of every Linux, which no wheel may bring along (PEP 600).
+SYSTEM = re.compile(r"^(ld-linux.*|lib(c|m|mvec|pthread|dl|rt|util|resolv|stdc\+\+|gcc_s)\.so.*)$")
 
 
 def version() -> str:
@@ -37,10 +37,13 @@ def metadata() -> str:
 
     def value(key: str) -> str:
         return re.search(rf'^{key} = "(.*)"', project, re.M).group(1)
+    keywords = ",".join(re.findall('"(.*?)"', re.search(r"^keywords = \[(.*)\]", project, re.M).group(1)))
     lines = ["Metadata-Version: 2.1", f"Name: {value('name')}", f"Version: {version()}",
              f"Summary: {value('description')}", "License: GPL-3.0-or-later",
+             f"Keywords: {keywords}",
              f"Requires-Python: {value('requires-python')}"]
     inside = re.search(r"^dependencies = \[(.*)\]", project, re.M).group(1)
+    lines += [f"Classifier: {known}" for known in re.findall(r'^    "(.* :: .*)",$', project, re.M)]
     lines += [f"Requires-Dist: {need}" for need in re.findall(r'"(.*?)"', inside)]
     extras = project.split("[project.optional-dependencies]")[1].split("\n[")[0]
     for extra, needs in re.findall(r"^(\w+) = \[(.*)\]", extras, re.M):
@@ -68,22 +71,36 @@ def needed(library: Path) -> list[Path]:
     return [Path(path) for name, path in sorted(found.items()) if not SYSTEM.match(name)]
 
 
-def libraries() -> dict[str, bytes]:
-    """Names in the wheel, and contents."""
-    make("wheel-library")
-    own = next((SOURCE / "build" / "wheel").glob("libmesofit.so.*"))
-    soname = {path: path.name for path in [own, *needed(own)]}
-    return {f"mesofit/lib/{name}": path.read_bytes() for path, name in soname.items()}
+def binaries() -> dict[str, Path]:
+    """Names in the wheel, and files: the library, the program, and what they need."""
+    make("wheel-files")
+    built = SOURCE / "build" / "wheel"
+    own = [next(built.glob("libmesofit.so.*")), built / "mesofit"]
+    return {path.name: path for path in [*own, *sorted({other for path in own for other in needed(path)})]}
+
+
+def licence(library: Path) -> bytes:
+    """What Debian says of the package that a library is of."""
+    listed = subprocess.run(["dpkg-query", "--search", f"*/{library.resolve().name}"], capture_output=True, text=True,
+                            check=True).stdout
+    return Path(f"/usr/share/doc/{listed.split(':')[0]}/copyright").read_bytes()
+
+
+def glibc(paths: list[Path]) -> str:
+    """The newest version of the C library that one of these asks for, "2_36"."""
+    asked = subprocess.run(["objdump", "-T", *map(str, paths)], capture_output=True, text=True, check=True).stdout
+    newest = max(tuple(map(int, found)) for found in re.findall(r"GLIBC_(\d+)\.(\d+)", asked))
+    return "{}_{}".format(*newest)
 
 
 # Wheels -------------------------------------------------------------------------------------------
 
-def write_wheel(directory: str, files: dict[str, bytes]) -> str:
-    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
-    tag, name = f"py3-none-{platform}", f"mesofit-{version()}"
+def write_wheel(directory: str, files: dict[str, bytes], system: str = "linux") -> str:
+    tag, name = f"py3-none-{system}_{os.uname().machine}", f"mesofit-{version()}"
     information = f"{name}.dist-info"
     files = {**files, f"{information}/METADATA": metadata().encode(),
-             f"{information}/LICENSE": (SOURCE / "LICENSE").read_bytes(),
+             f"{information}/entry_points.txt": b"[console_scripts]\nmesofit = mesofit._program:main\n",
+             f"{information}/licenses/LICENSE": (SOURCE / "LICENSE").read_bytes(),
              f"{information}/WHEEL": (f"Wheel-Version: 1.0\nGenerator: mesofit\n"
                                       f"Root-Is-Purelib: false\nTag: {tag}\n").encode()}
     record = []
@@ -114,7 +131,13 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     package = {f"mesofit/{path.name}": path.read_bytes()
                for path in sorted((HERE / "mesofit").iterdir())
                if path.suffix == ".py" or path.name == "py.typed"}
-    return write_wheel(wheel_directory, {**package, **libraries()})
+    files = binaries()
+    package |= {f"mesofit/lib/{name}": path.read_bytes() for name, path in files.items()}
+    package |= {f"mesofit/share/mesofit/plots/{path.name}": path.read_bytes()
+                for path in sorted((SOURCE / "plots").glob("*.gp"))}
+    package |= {f"mesofit-{version()}.dist-info/licenses/{name}.txt": licence(path)
+                for name, path in files.items() if "mesofit" not in name}
+    return write_wheel(wheel_directory, package, f"manylinux_{glibc([*files.values()])}")
 
 
 def build_editable(wheel_directory, config_settings=None, metadata_directory=None):

@@ -26,6 +26,8 @@ def wheel(tmp_path_factory):
     name = backend.build_wheel(str(place))
     with zipfile.ZipFile(place / name) as archive:
         archive.extractall(place / "installed")
+        for about in archive.infolist():
+            (place / "installed" / about.filename).chmod(about.external_attr >> 16)
     return place / "installed"
 
 
@@ -50,12 +52,25 @@ def test_wheel_has_all_modules(wheel):
     assert (wheel / "mesofit" / "py.typed").exists()
 
 
+def test_wheel_has_the_program(wheel):
+    code = "import mesofit._program as p; p.main()"
+    done = subprocess.run([sys.executable, "-c", code, "--version"], cwd=wheel, capture_output=True,
+                          text=True, env=BARE, check=True)
+    assert done.stdout == f"mesofit {backend.version()}\n"
+    assert list((wheel / "mesofit" / "share" / "mesofit" / "plots").glob("*.gp"))
+
+
+def test_wheel_keeps_the_rules_of_its_name(wheel):
+    archive = next(wheel.parent.glob("*.whl"))
+    subprocess.run([ROOT / "packaging" / "check_wheel.py", archive], check=True)
+
+
 def test_archive_has_all_sources(tmp_path):
     name = backend.build_sdist(str(tmp_path))
     with tarfile.open(tmp_path / name) as archive:
         archive.extractall(tmp_path)
     inside = tmp_path / name.removesuffix(".tar.gz")
-    subprocess.run(["make", "-n", "-C", str(inside / "source"), "wheel-library"], check=True,
+    subprocess.run(["make", "-n", "-C", str(inside / "source"), "wheel-files"], check=True,
                    capture_output=True, env=BARE)
     for folder in ("include", "src", "share"):
         for path in (ROOT / folder).rglob("*.[ch]"):
