@@ -23,6 +23,7 @@
 # make results RUN=runs/…   runs what the README there asks for, and writes numbers and figures into it
 # make number NUMBER=0.3.0   the next release has this number (RELEASING.md)
 # make release        source archive, wheel and Debian packages of what is committed, tried
+# make site           the pages with search, in build/site/site; no link may be broken
 # make bench          speed of the engine on this machine, to tests/bench/results
 # make WERROR=1 …     warnings are errors
 # make VERBOSE=1 …    shows the whole commands
@@ -337,11 +338,14 @@ lint: $(LIBRARY) $(LIVE)
 	tests/tools/lint.sh $(LIBRARY) $(LIVE)
 
 # A release, and its number: RELEASING.md.
-.PHONY: number release
+.PHONY: number release site
 number:
 	packaging/number.sh "$(NUMBER)"
 release:
 	packaging/release.sh
+# The pages as a site (Debian: mkdocs-material).
+site:
+	packaging/site.py $(BUILD)/site
 
 .PHONY: standard-set
 standard-set: $(PROGRAM)
