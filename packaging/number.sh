@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
 # number.sh X.Y.Z: make it the release: in include/mesofit.h, of which all else has it, and in what others read:
-# CITATION.cff and debian/changelog, with today's date; CHANGELOG.md's "Unreleased" gets that heading.
+# CITATION.cff, the recipe for conda-forge and debian/changelog, with today's date; CHANGELOG.md's "Unreleased" gets that heading.
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -13,6 +13,7 @@ today=$(date -u +%F)
 
 sed -i "s/^#define MESOFIT_VERSION .*/#define MESOFIT_VERSION \"$number\"/" include/mesofit.h
 sed -i "/^date-released:/d; s/^version: .*/version: $number\ndate-released: $today/" CITATION.cff
+sed -i "s/^{% set version = .*/{% set version = \"$number\" %}/" packaging/conda/meta.yaml
 sed -i "s/^## Unreleased\$/## $number - $today/" CHANGELOG.md
 {
     printf 'mesofit (%s) unstable; urgency=medium\n\n  * Changes are in CHANGELOG.md.\n\n' "$number"

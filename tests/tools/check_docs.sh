@@ -64,6 +64,7 @@ check_packages() {
     version=$(sed -n 's/^#define MESOFIT_VERSION "\(.*\)"/\1/p' include/mesofit.h)
     head -n 1 debian/changelog | grep -qF "($version)" || echo "debian/changelog: not of version $version"
     grep -qx "version: $version" CITATION.cff || echo "CITATION.cff: not of version $version"
+    grep -qxF "{% set version = \"$version\" %}" packaging/conda/meta.yaml || echo "packaging/conda: not of version $version"
     sed -n 's/.*apt-get install -y \([^&]*\)&&.*/\1/p' README.md | head -n 1 | tr ' ' '\n' |
         grep -vxE '|build-essential|libcmocka-dev' | while IFS= read -r package; do
         sed '/^Package:/,$d' debian/control | grep -qw -- "$package" ||
