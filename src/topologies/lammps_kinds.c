@@ -36,18 +36,18 @@ static int find_root(int *root, int atom) {
 }
 
 static void join_atoms(struct finding *finding) {
-    const struct lammps_terms *terms = finding->source->terms;
     int *root = finding->root;
     for (size_t atom = 0; atom < finding->atoms; atom++)
         root[atom] = (int)atom;
-    for (int order = 0; order < BONDED_KINDS; order++)
-        for (size_t n = 0; n < terms->terms[order]; n++) {
-            const int *atom = terms->term[order][n].atom;
-            for (int k = 1; k < mf_bonded_kinds[order]->beads; k++) {
-                const int a = find_root(root, atom[0]), b = find_root(root, atom[k]);
-                root[a > b ? a : b] = a > b ? b : a;
-            }
+    for (int order = 0; order < BONDED_KINDS; order++) {
+        const struct structure_terms *const terms = &finding->source->structure->terms[order];
+        const size_t beads = (size_t)mf_bonded_kinds[order]->beads;
+        for (size_t n = 0; n < terms->count * beads; n++) {
+            const int a = find_root(root, (int)terms->atom[n - n % beads]);
+            const int b = find_root(root, (int)terms->atom[n]);
+            root[a > b ? a : b] = a > b ? b : a;
         }
+    }
     for (size_t atom = 0; atom < finding->atoms; atom++)
         root[atom] = find_root(root, (int)atom);
 }
@@ -77,27 +77,26 @@ static int compare_terms(const void *a, const void *b) {
 /// Terms of a molecule name its beads, from the smaller end, in an order that is the same for
 /// molecules that are alike.
 static enum status gather_terms(struct finding *finding, int order) {
-    const struct lammps_terms *terms = finding->source->terms;
-    const size_t count = terms->terms[order];
-    const int beads = mf_bonded_kinds[order]->beads;
+    const struct structure_terms *const terms = &finding->source->structure->terms[order];
+    const size_t count = terms->count, beads = (size_t)mf_bonded_kinds[order]->beads;
     OWNED size_t *next = NULL;
     TRY_ARRAY(finding->term_begin[order], finding->atoms + 1);
     TRY_ARRAY(finding->term[order], count);
     TRY_ARRAY(next, finding->atoms);
     size_t *begin = finding->term_begin[order];
     for (size_t n = 0; n < count; n++)
-        begin[finding->root[terms->term[order][n].atom[0]] + 1]++;
+        begin[finding->root[terms->atom[n * beads]] + 1]++;
     for (size_t atom = 0; atom < finding->atoms; atom++) {
         next[atom] = begin[atom];
         begin[atom + 1] += begin[atom];
     }
     for (size_t n = 0; n < count; n++) {
-        const struct lammps_term *from = &terms->term[order][n];
-        const bool turned = from->atom[0] > from->atom[beads - 1];
-        struct topology_term *to = &finding->term[order][next[finding->root[from->atom[0]]]++];
-        to->group = finding->source->group[order][from->type];
-        for (int k = 0; k < beads; k++)
-            to->bead[k] = finding->local[from->atom[turned ? beads - 1 - k : k]];
+        const uint32_t *const atom = terms->atom + n * beads;
+        const bool turned = atom[0] > atom[beads - 1];
+        struct topology_term *to = &finding->term[order][next[finding->root[atom[0]]]++];
+        to->group = finding->source->group[order][n];
+        for (size_t k = 0; k < beads; k++)
+            to->bead[k] = finding->local[atom[turned ? beads - 1 - k : k]];
     }
     for (size_t atom = 0; atom < finding->atoms; atom++)
         if (begin[atom + 1] > begin[atom])

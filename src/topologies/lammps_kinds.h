@@ -2,13 +2,13 @@
 /// @file The molecules of a data file of LAMMPS: what terms join, and which of them are alike.
 #pragma once
 
-#include "topologies/lammps_terms.h"
+#include "system/topology.h"
+#include "trajectory/structure.h"
 
 struct lammps_kinds_source {
     const char *file;
     const struct structure *structure; ///< atoms in the order of ids
-    const struct lammps_terms *terms;
-    int *const *group; ///< shape [BONDED_KINDS][types]: of each type of terms
+    int *const *group;                 ///< shape [BONDED_KINDS][terms]: of each term
     int exclude;
     bool named; ///< types are called as the atoms, and not by their numbers
 };

@@ -44,7 +44,7 @@ static enum status check_known(struct reading *reading) {
                 (int)(last->begin + last->length - word[0].begin), word[0].begin);
 }
 
-/// The terms of the structure, and the lines in which they stand.
+/// The lines in which the terms of the structure stand.
 static enum status add_terms(struct reading *reading, int order) {
     struct lammps_terms *const terms = reading->terms;
     const struct bonded_kind *const kind = mf_bonded_kinds[order];
@@ -52,7 +52,7 @@ static enum status add_terms(struct reading *reading, int order) {
     const struct lammps_data_terms *const section = &reading->data.terms[order];
     struct word word[LAMMPS_DATA_WORDS];
     size_t found = 0;
-    TRY_ARRAY(terms->term[order], from->count);
+    TRY_ARRAY(terms->line[order], from->count);
     go_to(reading, section->first);
     for (const char *line = section->first; line; reading->line++) {
         const size_t words = mf_lammps_data_split(line, word);
@@ -63,11 +63,7 @@ static enum status add_terms(struct reading *reading, int order) {
             continue; // more than the header says is told below
         if (section->types == 0)
             return FAIL(reading, "the header has no \"%s types\"", kind->name);
-        const size_t n = terms->terms[order]++;
-        struct lammps_term *const term = &terms->term[order][n];
-        *term = (struct lammps_term){.line = reading->line, .type = (int)from->type[n]};
-        for (int k = 0; k < kind->beads; k++)
-            term->atom[k] = (int)from->atom[n * (size_t)kind->beads + (size_t)k];
+        terms->line[order][found - 1] = reading->line;
     }
     if (found == section->count)
         return STATUS_OK;
@@ -128,10 +124,16 @@ static enum status add_coefficients(struct reading *reading, int order) {
     return STATUS_OK;
 }
 
-/// Terms of the same atoms follow each other, in either direction, and among angles and dihedrals
-/// those of the same type.
+/// From the end whose atom is the smaller.
+struct sorted_term {
+    uint32_t atom[BONDED_MAX_TERM_BEADS], type;
+    size_t line;
+};
+
+/// Terms of the same atoms follow each other, and among angles and dihedrals those of the same
+/// type.
 static int compare_terms(const void *a, const void *b) {
-    const struct lammps_term *x = a, *y = b;
+    const struct sorted_term *x = a, *y = b;
     for (int k = 0; k < BONDED_MAX_TERM_BEADS; k++)
         if (x->atom[k] != y->atom[k])
             return x->atom[k] < y->atom[k] ? -1 : 1;
@@ -141,17 +143,17 @@ static int compare_terms(const void *a, const void *b) {
 }
 
 static enum status check_doubled(struct reading *reading, int order) {
-    const struct lammps_terms *terms = reading->terms;
-    const size_t count = terms->terms[order];
-    const int beads = mf_bonded_kinds[order]->beads;
-    OWNED struct lammps_term *sorted = NULL;
+    const struct structure_terms *const terms = &reading->structure->terms[order];
+    const size_t count = terms->count, beads = (size_t)mf_bonded_kinds[order]->beads;
+    OWNED struct sorted_term *sorted = NULL;
     TRY_ARRAY(sorted, count);
     for (size_t n = 0; n < count; n++) {
-        const struct lammps_term *from = &terms->term[order][n];
-        const bool turned = from->atom[0] > from->atom[beads - 1];
-        sorted[n] = *from;
-        for (int k = 0; k < beads && turned; k++)
-            sorted[n].atom[k] = from->atom[beads - 1 - k];
+        const uint32_t *const atom = terms->atom + n * beads;
+        const bool turned = atom[0] > atom[beads - 1];
+        sorted[n].type = terms->type[n];
+        sorted[n].line = reading->terms->line[order][n];
+        for (size_t k = 0; k < beads; k++)
+            sorted[n].atom[k] = atom[turned ? beads - 1 - k : k];
     }
     qsort(sorted, count, sizeof *sorted, compare_terms);
     for (size_t n = 1; n < count; n++) {
@@ -168,7 +170,7 @@ static enum status check_doubled(struct reading *reading, int order) {
 enum status mf_lammps_terms_read(struct lammps_terms *terms, const struct structure *structure,
                                  const struct trajectory_frame *frame) {
     struct reading reading = {.terms = terms, .structure = structure, .frame = frame};
-    *terms = (struct lammps_terms){.terms = {0}};
+    *terms = (struct lammps_terms){0};
     TRY(mf_lammps_data_read(&reading.data, frame));
     TRY(check_known(&reading));
     for (int order = 0; order < BONDED_KINDS; order++)
@@ -182,8 +184,8 @@ enum status mf_lammps_terms_read(struct lammps_terms *terms, const struct struct
 
 void mf_lammps_terms_clear(struct lammps_terms *terms) {
     for (int order = 0; order < BONDED_KINDS; order++) {
-        mf_memory_free(terms->term[order]);
+        mf_memory_free(terms->line[order]);
         mf_memory_free(terms->coefficient[order]);
     }
-    *terms = (struct lammps_terms){.terms = {0}};
+    *terms = (struct lammps_terms){0};
 }

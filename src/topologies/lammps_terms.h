@@ -18,17 +18,9 @@ struct lammps_coefficient {
     double number[LAMMPS_MAX_NUMBERS];
 };
 
-/// A line of "Bonds" and the like.
-struct lammps_term {
-    int type;                        ///< from 1 on
-    int atom[BONDED_MAX_TERM_BEADS]; ///< by their places in the structure, whose order is that of
-                                     ///< ids
-    size_t line;
-};
-
+/// What stands in a file beside the terms of the structure.
 struct lammps_terms {
-    size_t terms[BONDED_KINDS];
-    struct lammps_term *term[BONDED_KINDS];
+    size_t *line[BONDED_KINDS]; ///< shape [terms]: of each
     int64_t types[BONDED_KINDS];
     struct lammps_coefficient *coefficient[BONDED_KINDS]; ///< shape [types + 1], by type
 };

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "io/text_file.h"
 #include "topologies/lammps_kinds.h"
+#include "topologies/lammps_terms.h"
 #include "trajectory/trajectory.h"
 
 #include <math.h>
@@ -216,12 +217,13 @@ struct reading {
     const char *file;
     double length, energy; ///< the file's units in λ, k_B T_0
     struct lammps_terms terms;
-    int *group[BONDED_KINDS]; ///< shape [types + 1]; −1: no term has the type
+    int *group[BONDED_KINDS]; ///< shape [terms]: of each
     char *note;
 };
 
 /// The group of a type of terms: the scene's of that name, or a new one with its coefficients.
-static enum status find_group(struct reading *reading, int order, int type, size_t line) {
+static enum status find_group(struct reading *reading, int order, int type, size_t line,
+                              int *group_of_type) {
     struct molecules *molecules = reading->molecules;
     const struct lammps_coefficient *coefficient = &reading->terms.coefficient[order][type];
     char name[TOPOLOGY_NAME_SIZE];
@@ -230,7 +232,7 @@ static enum status find_group(struct reading *reading, int order, int type, size
     snprintf(name, sizeof name, "%d", type);
     while (g < molecules->groups[order] && strcmp(molecules->group[order][g].name, name) != 0)
         g++;
-    reading->group[order][type] = g;
+    *group_of_type = g;
     if (g < molecules->groups[order])
         return STATUS_OK;
     if (coefficient->line == 0)
@@ -256,13 +258,19 @@ static enum status find_group(struct reading *reading, int order, int type, size
     return STATUS_OK;
 }
 
-static enum status find_groups(struct reading *reading) {
-    for (int order = 0; order < BONDED_KINDS; order++)
-        for (size_t n = 0; n < reading->terms.terms[order]; n++) {
-            const struct lammps_term *term = &reading->terms.term[order][n];
-            if (reading->group[order][term->type] < 0)
-                TRY(find_group(reading, order, term->type, term->line));
-        }
+static enum status find_groups(struct reading *reading, int order,
+                               const struct structure_terms *terms) {
+    const size_t types = (size_t)reading->terms.types[order];
+    OWNED int *of_type = NULL; // −1: no term before has the type
+    TRY_ARRAY(of_type, types + 1);
+    memset(of_type, 0xff, (types + 1) * sizeof *of_type);
+    for (size_t n = 0; n < terms->count; n++) {
+        const uint32_t type = terms->type[n];
+        if (of_type[type] < 0)
+            TRY(find_group(reading, order, (int)type, reading->terms.line[order][n],
+                           &of_type[type]));
+        reading->group[order][n] = of_type[type];
+    }
     return STATUS_OK;
 }
 
@@ -270,11 +278,8 @@ static enum status find_groups(struct reading *reading) {
 
 static enum status read_terms(struct reading *reading, const struct trajectory *trajectory) {
     TRY(mf_lammps_terms_read(&reading->terms, &trajectory->structure, &trajectory->first));
-    for (int order = 0; order < BONDED_KINDS; order++) {
-        TRY_ARRAY(reading->group[order], reading->terms.types[order] + 1);
-        for (int64_t type = 0; type <= reading->terms.types[order]; type++)
-            reading->group[order][type] = -1;
-    }
+    for (int order = 0; order < BONDED_KINDS; order++)
+        TRY_ARRAY(reading->group[order], trajectory->structure.terms[order].count);
     return STATUS_OK;
 }
 
@@ -289,7 +294,6 @@ static enum status find_kinds(const struct reading *reading, const struct struct
                               struct composition *composition, size_t **order) {
     return mf_lammps_kinds_find(&(struct lammps_kinds_source){.file = reading->file,
                                                               .structure = structure,
-                                                              .terms = &reading->terms,
                                                               .group = reading->group,
                                                               .exclude = exclude},
                                 topology, composition, order);
@@ -313,7 +317,8 @@ enum status mf_lammps_topology_read(struct molecules *molecules, struct composit
     *order = NULL;
     TRY(mf_trajectory_open(&trajectory, file, &options));
     CHECK(read_terms(&reading, &trajectory));
-    CHECK(find_groups(&reading));
+    for (int n = 0; n < BONDED_KINDS; n++)
+        CHECK(find_groups(&reading, n, &trajectory.structure.terms[n]));
     CHECK(find_kinds(&reading, &trajectory.structure, exclude, &molecules->topology, composition,
                      order));
 done:
@@ -347,8 +352,8 @@ enum status mf_lammps_topology_order(const char *file, const char *style,
     TRY(mf_trajectory_open(&trajectory, file, &options));
     CHECK(read_terms(&reading, &trajectory));
     for (int n = 0; n < BONDED_KINDS; n++)
-        for (int64_t type = 0; type <= reading.terms.types[n]; type++)
-            reading.group[n][type] = (int)type;
+        for (size_t k = 0; k < trajectory.structure.terms[n].count; k++)
+            reading.group[n][k] = (int)trajectory.structure.terms[n].type[k];
     CHECK(find_kinds(&reading, &trajectory.structure, 0, &own, &types, order));
     bool same = own.kinds == topology->kinds;
     for (int k = 0; k < own.kinds && same; k++)

@@ -31,7 +31,7 @@ struct reading {
     struct molecules *molecules;
     const char *file;
     const struct structure *structure;
-    struct lammps_terms terms;                           ///< their types are groups
+    int *group[BONDED_KINDS];                            ///< shape [terms]: of each
     uint32_t called[BONDED_KINDS][MOLECULES_MAX_GROUPS]; ///< a group in the file, by its number
 };
 
@@ -84,34 +84,21 @@ static enum status find_group(struct reading *reading, int order, size_t n, int 
     return mf_molecules_add_group(molecules, order, name, kind->laws[0]);
 }
 
-static enum status list_terms(struct reading *reading, int order) {
-    const struct structure_terms *const from = &reading->structure->terms[order];
-    const int beads = mf_bonded_kinds[order]->beads;
-    TRY_ARRAY(reading->terms.term[order], from->count);
-    reading->terms.terms[order] = from->count;
-    for (size_t n = 0; n < from->count; n++) {
-        struct lammps_term *const term = &reading->terms.term[order][n];
-        TRY(find_group(reading, order, n, &term->type));
-        for (int k = 0; k < beads; k++)
-            term->atom[k] = (int)from->atom[n * (size_t)beads + (size_t)k];
-    }
+static enum status find_groups(struct reading *reading, int order) {
+    const size_t count = reading->structure->terms[order].count;
+    TRY_ARRAY(reading->group[order], count);
+    for (size_t n = 0; n < count; n++)
+        TRY(find_group(reading, order, n, &reading->group[order][n]));
     return STATUS_OK;
 }
 
 // Kinds -------------------------------------------------------------------------------------------
 
 static enum status find_kinds(struct reading *reading, struct composition *types) {
-    int own[MOLECULES_MAX_GROUPS];
-    int *group[BONDED_KINDS];
     OWNED size_t *order = NULL;
-    for (int g = 0; g < MOLECULES_MAX_GROUPS; g++)
-        own[g] = g;
-    for (int kind = 0; kind < BONDED_KINDS; kind++)
-        group[kind] = own;
     return mf_lammps_kinds_find(&(struct lammps_kinds_source){.file = reading->file,
                                                               .structure = reading->structure,
-                                                              .terms = &reading->terms,
-                                                              .group = group,
+                                                              .group = reading->group,
                                                               .exclude = 0,
                                                               .named = true},
                                 &reading->molecules->topology, types, &order);
@@ -164,11 +151,12 @@ enum status mf_structure_topology_read(struct molecules *molecules, struct compo
     TRY(mf_structure_topology_open(&trajectory, file, NULL)); // lengths are not used
     reading.structure = &trajectory.structure;
     for (int order = 0; order < STRUCTURE_TERM_KINDS; order++)
-        CHECK(list_terms(&reading, order));
+        CHECK(find_groups(&reading, order));
     CHECK(find_kinds(&reading, types));
     CHECK(check_kinds(&reading, types));
 done:
-    mf_lammps_terms_clear(&reading.terms);
+    for (int order = 0; order < STRUCTURE_TERM_KINDS; order++)
+        mf_memory_free(reading.group[order]);
     mf_trajectory_close(&trajectory);
     return status;
 }
