@@ -191,7 +191,7 @@ static enum status allocate(struct solvent *solvent, size_t beads) {
     if (beads == 0)
         goto done;
     NEW_SCATTERED(solvent->first_bead, solvent->cell_total);
-    NEW_SCATTERED(solvent->bead_link, beads);
+    NEW_SCATTERED(solvent->next_bead, beads);
 done:
     return status;
 }
@@ -269,6 +269,6 @@ void mf_solvent_clear(struct solvent *solvent) {
     mf_memory_free(solvent->cell);
     mf_memory_free(solvent->start);
     mf_memory_free(solvent->first_bead);
-    mf_memory_free(solvent->bead_link);
+    mf_memory_free(solvent->next_bead);
     *solvent = (struct solvent){0};
 }

@@ -40,7 +40,7 @@ struct solvent {
     int parts;                             ///< into which passes are divided
     double shift[3];                       ///< of the grid, 0 to a [λ]
     int32_t *first_bead; ///< shape [cell_total]: chains of the beads in the collisions; NULL: none
-    struct cells_link *bead_link; ///< shape [beads]
+    int32_t *next_bead;  ///< shape [beads]: cells_enter
 };
 
 /// Place the solvent at random where there is room, with Maxwell's velocities that have exactly

@@ -72,7 +72,7 @@ static void redraw(const struct pass *pass, uint32_t begin, uint32_t end, int di
 INLINE void add_beads(const struct pass *pass, size_t cell, struct sums *sums,
                       const int dimensions) {
     for (int32_t bead = pass->solvent->first_bead[cell]; bead >= 0;
-         bead = pass->solvent->bead_link[bead].next) {
+         bead = pass->solvent->next_bead[bead]) {
         const double mass = bead_mass(pass, (size_t)bead);
         sums->mass += mass;
         sums->bodies++;
@@ -221,7 +221,7 @@ INLINE void turn_space(const struct solvent *solvent, uint32_t begin, uint32_t e
 static void turn_beads(const struct pass *pass, size_t cell, const struct collision *collision) {
     const int dimensions = pass->solvent->box.dimensions;
     for (int32_t bead = pass->solvent->first_bead[cell]; bead >= 0;
-         bead = pass->solvent->bead_link[bead].next) {
+         bead = pass->solvent->next_bead[bead]) {
         double u[3];
         for (int d = 0; d < dimensions; d++)
             u[d] = pass->beads->velocity[d][bead];
@@ -312,7 +312,7 @@ static void sort_beads(struct solvent *solvent, const struct particles *beads) {
         double position[3] = {0};
         for (int d = 0; d < solvent->box.dimensions; d++)
             position[d] = beads->position[d][k];
-        cells_enter(&solvent->first_bead[mf_solvent_cell(solvent, position)], solvent->bead_link,
+        cells_enter(&solvent->first_bead[mf_solvent_cell(solvent, position)], solvent->next_bead,
                     (int32_t)k);
     }
 }

@@ -90,24 +90,9 @@ void mf_cells_visit_pairs(const struct cells *cells, const int reach[3],
 
 // Chains ------------------------------------------------------------------------------------------
 
-struct cells_link {
-    int32_t next, previous; ///< in a cell, −1: none
-};
-
-/// Particle k becomes the first of a cell, `*first`, −1: empty.
-static inline void cells_enter(int32_t *first, struct cells_link *link, int32_t k) {
-    link[k] = (struct cells_link){.next = *first, .previous = -1};
-    if (*first >= 0)
-        link[*first].previous = k;
+/// Particle k becomes the first of a cell, `*first`, −1: empty. @param[in,out] next  shape
+/// [particles]: behind each in its cell, −1: none
+static inline void cells_enter(int32_t *first, int32_t *next, int32_t k) {
+    next[k] = *first;
     *first = k;
-}
-
-static inline void cells_leave(int32_t *first, struct cells_link *link, int32_t k) {
-    const struct cells_link own = link[k];
-    if (own.next >= 0)
-        link[own.next].previous = own.previous;
-    if (own.previous >= 0)
-        link[own.previous].next = own.next;
-    else
-        *first = own.next;
 }

@@ -5,7 +5,6 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "neighbours_build.h"
-#include "neighbours_rows.h"
 
 /// Cells are halved along one axis after the other, the fastest first, as long as this many
 /// particles remain in one: fewer candidates are looked at, but fewer particles share the work of

@@ -13,3 +13,10 @@ void mf_neighbours_sort(struct neighbours *neighbours, const struct particles *p
 /// Build the list of sorted particles. Fails: NO_MEMORY.
 enum status mf_neighbours_build(struct neighbours *neighbours,
                                 const struct particles *particles) MUST_USE;
+
+// Particles as the neighbour search reads them: rows of cells with images at both ends.
+
+/// Fails: NO_MEMORY.
+enum status mf_neighbours_init_rows(struct neighbours *neighbours, const struct box *box) MUST_USE;
+
+void mf_neighbours_clear_rows(struct neighbours *neighbours);

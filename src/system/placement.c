@@ -115,7 +115,7 @@ void mf_placement_tilt(struct particles *particles, double tilt, uint64_t seed) 
 struct occupied {
     int cells[3];
     int32_t *first;
-    struct cells_link *link;
+    int32_t *next;
 };
 
 static enum status occupied_init(struct occupied *occupied, const struct particles *particles,
@@ -125,7 +125,7 @@ static enum status occupied_init(struct occupied *occupied, const struct particl
                      occupied->cells);
     const size_t total = cells_total(occupied->cells);
     TRY_ARRAY(occupied->first, total);
-    TRY_ARRAY(occupied->link, particles->count);
+    TRY_ARRAY(occupied->next, particles->count);
     memset(occupied->first, 0xff, total * sizeof *occupied->first); // −1: empty
     return STATUS_OK;
 }
@@ -145,7 +145,7 @@ static bool is_free(const struct occupied *occupied, const struct particles *par
     const int cells = mf_cells_around(occupied->cells, cell, box->dimensions, around);
     for (int n = 0; n < cells; n++) {
         int32_t other = occupied->first[around[n]];
-        for (; other >= 0; other = occupied->link[other].next) {
+        for (; other >= 0; other = occupied->next[other]) {
             double square = 0;
             for (int d = 0; d < box->dimensions; d++) {
                 const double dx = box_nearest(x[d] - particles->position[d][other], box->length[d]);
@@ -183,14 +183,14 @@ enum status mf_placement_random(struct particles *particles, double separation, 
         } while (!is_free(&occupied, particles, x, separation));
         int cell[3];
         cell_of(&occupied, box, x, cell);
-        cells_enter(&occupied.first[cells_number(occupied.cells, cell)], occupied.link, (int32_t)k);
+        cells_enter(&occupied.first[cells_number(occupied.cells, cell)], occupied.next, (int32_t)k);
         for (int d = 0; d < box->dimensions; d++)
             particles->position[d][k] = x[d];
     }
     mf_particles_update_fractions(particles);
 done:
     mf_memory_free(occupied.first);
-    mf_memory_free(occupied.link);
+    mf_memory_free(occupied.next);
     return status;
 }
 

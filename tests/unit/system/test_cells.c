@@ -60,19 +60,13 @@ static void test_cells_take_what_is_outside_into_the_first_and_the_last(void **s
     assert_int_equal(cells_fit(10, 0, 100), 100);
 }
 
-static void test_cells_chain_loses_those_that_leave_and_no_others(void **state) {
+static void test_cells_chain_those_that_enter_the_last_one_first(void **state) {
     (void)state;
-    int32_t first = -1;
-    struct cells_link link[4];
+    int32_t first = -1, next[4];
     for (int32_t k = 0; k < 4; k++)
-        cells_enter(&first, link, k);
-    cells_leave(&first, link, 1); // from the middle
-    cells_leave(&first, link, 3); // the first
-    assert_int_equal(first, 2);
-    assert_int_equal(link[2].next, 0);
-    assert_int_equal(link[0].next, -1);
-    cells_leave(&first, link, 0); // the last
-    cells_leave(&first, link, 2);
+        cells_enter(&first, next, k);
+    for (int32_t k = 3; k >= 0; k--, first = next[first])
+        assert_int_equal(first, k);
     assert_int_equal(first, -1);
 }
 
@@ -81,7 +75,7 @@ int main(void) {
         cmocka_unit_test(test_cells_keep_the_order_within_a_cell_when_sorted),
         cmocka_unit_test(test_cells_around_go_round_in_two_and_three_dimensions),
         cmocka_unit_test(test_cells_take_what_is_outside_into_the_first_and_the_last),
-        cmocka_unit_test(test_cells_chain_loses_those_that_leave_and_no_others),
+        cmocka_unit_test(test_cells_chain_those_that_enter_the_last_one_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
