@@ -45,7 +45,7 @@ enum observable_form {
     OBSERVABLE_NUMBER,        ///< by a value and its error
     OBSERVABLE_CURVE,         ///< by a table of x, values, errors
     OBSERVABLE_CURVE_OF_TIME, ///< the same at equal times from 0 on, of whole time steps
-    OBSERVABLE_OWN_FORM,      ///< by a record of its own (targets/target_record.h)
+    OBSERVABLE_OWN_FORM,      ///< by a record of its own (targets/target_files.h)
 };
 
 /// What an observable supplies as a target of fits.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/target_curve.h"
-
 #include "base/memory.h"
 #include "io/units_text.h"
 #include "targets/target_files.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/target_etd.h"
-
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "targets/target_files.h"

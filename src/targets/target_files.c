@@ -36,6 +36,52 @@ const struct target_record *const mf_target_records[] = {
     &mf_target_kirkwood_buff, &mf_target_diffusion, NULL,
 };
 
+// Forces ------------------------------------------------------------------------------------------
+
+#define MEMBER(name) .offset = offsetof(struct target_forces_files, name)
+const struct field mf_target_forces_fields[] = {
+    {"file", FIELD_FILE, MEMBER(file), .required = true, .unit = "", .help = "forces.tsv"},
+    {"gram_file", FIELD_FILE, MEMBER(gram_file), .required = true, .unit = "",
+     .help = "forces_gram.tsv"},
+    FIELD_END,
+};
+
+/// Read the object "forces", if there is one. Faults go to the document.
+static enum status read_forces(struct target_forces *forces, struct json_object *target,
+                               const struct units *units) {
+    static const double joules = 1e-3 * UNITS_BOLTZMANN * UNITS_AVOGADRO; // kJ/mol of a kelvin
+    struct json_object object = mf_json_child_of(target, "forces", false, "file");
+    const size_t faults = mf_json_fault_count(target->document);
+    if (object.item == NULL)
+        return STATUS_OK;
+    forces->given = true;
+    mf_json_fields(&object, mf_target_forces_fields, &forces->files);
+    mf_json_finish(&object);
+    if (!mf_units_known(units))
+        mf_json_fault(&object, NULL, "forces are in nm and kJ/mol: the file needs \"units\"");
+    if (mf_json_fault_count(target->document) > faults)
+        return STATUS_OK;
+    const enum status status =
+        mf_force_equations_read(&forces->equations, forces->files.file, forces->files.gram_file);
+    if (status == STATUS_NO_MEMORY)
+        return status;
+    if (status != STATUS_OK)
+        mf_json_fault(&object, NULL, "%s", mf_status_marked());
+    else
+        mf_force_equations_scale(&forces->equations, units->length, joules * units->temperature);
+    return STATUS_OK;
+}
+
+static void write_forces(const struct target_forces *forces, struct json_writer *writer) {
+    if (!forces->given)
+        return;
+    mf_json_begin(writer, "forces");
+    mf_json_write_fields(writer, mf_target_forces_fields, &forces->files);
+    mf_json_end(writer);
+}
+
+// Records -----------------------------------------------------------------------------------------
+
 /// Whether a record has a kind among those that it names, as "rdf".
 static bool lists_kind(const struct target_record *record, const char *kind) {
     size_t k = 0;
@@ -118,7 +164,7 @@ enum status mf_target_files_read(struct target_files *files, struct json_object 
             TRY(read_settings(files, &about, &child));
         TRY(record->read(files, kind, &child, scene));
     }
-    TRY(mf_target_forces_read(&files->forces, &object, scene->units));
+    TRY(read_forces(&files->forces, &object, scene->units));
     mf_json_finish(&object);
     check_motion(files, &object);
     check_window(files, &object);
@@ -146,7 +192,7 @@ void mf_target_files_clear(struct target_files *files) {
     }
     for (size_t place = 0; place < OBSERVABLES_MAX; place++)
         mf_memory_free(files->settings[place]);
-    mf_target_forces_clear(&files->forces);
+    mf_force_equations_clear(&files->forces.equations);
     *files = (struct target_files){0};
 }
 
@@ -167,7 +213,7 @@ void mf_target_files_write(const struct target_files *files, struct json_writer 
         mf_json_write_fields(writer, mf_target_files_use_fields, &files->use[kind]);
         mf_json_end(writer);
     }
-    mf_target_forces_write(&files->forces, writer);
+    write_forces(&files->forces, writer);
     mf_json_end(writer);
 }
 

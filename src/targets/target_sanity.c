@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "targets/target_sanity.h"
 
-#include "targets/target_sanity_state.h"
-
 #include "base/memory.h"
 #include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"

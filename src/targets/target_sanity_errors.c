@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Errors of targets that leave nothing to be fitted, and a g(r) that does not end at 1.
+// A look at a g(r): errors that leave nothing to be fitted, an end that is not 1, a table that is
+// not what a program writes, a system that is no homogeneous liquid; and at errors of all targets.
+#include "observe/kirkwood_buff.h"
 #include "targets/target_resample.h"
 #include "targets/target_sanity.h"
 
@@ -139,4 +141,185 @@ void mf_target_sanity_report_end(const struct target_rdf *target, const char *na
         "short for its structure?",
         name, end.from * length, unit, factor != 1 ? " over its normalisation" : "",
         end.mean / factor, ceil(1e3 * end.error / factor));
+}
+
+// What was made of a table of g(r) ----------------------------------------------------------------
+
+/// How many times as large as an ideal gas's a pressure can be. Fluids of repulsions r^-12 freeze
+/// at 19 times, of r^-6 at 39, hard spheres at 12.5; coarse potentials of water, and DPD's, have 7
+/// to
+/// 25. Water's 1 bar in Pa would be 73.
+static const double largest = 50;
+
+void mf_target_sanity_report_pressure(const struct target_files *files, const struct scene *scene,
+                                      const struct target_sanity_listener *listener) {
+    const struct target_number *const target = files->own[TARGET_PRESSURE];
+    const struct simulation_setup *const setup = &scene->setup;
+    const struct units *const units = &scene->units;
+    const double ideal = setup->temperature *
+                         (double)mf_composition_particles(&setup->composition) /
+                         mf_box_volume(&setup->box);
+    const double factor = mf_units_factor(units, "k_B T_0/lambda^d");
+    char unit[UNITS_NAME_SIZE];
+    if (!files->given[TARGET_PRESSURE] || !(fabs(target->value) > largest * ideal))
+        return;
+    mf_units_suffix(units, "k_B T_0/lambda^d", unit);
+    mf_target_sanity_warn(listener,
+                          "mesofit: warning: target.pressure: %.6g%s is %.3g times the pressure of "
+                          "an ideal gas of this density and temperature, %.4g%s: no fluid has more "
+                          "than some %g times as much; is it in%s, and not in Pa or another unit?",
+                          factor * target->value, unit, fabs(target->value) / ideal, factor * ideal,
+                          unit, largest, unit[0] ? unit : " units of k_B T_0/lambda^3");
+}
+
+/// Where pairs do not come g is 0, and a fluid of soft cores has pairs from r = 0 on.
+static void warn_of_missing_rows(const struct target_rdf *target, const char *name,
+                                 const struct scene *scene,
+                                 const struct target_sanity_listener *listener) {
+    static const double seen = 0.05, standard_errors = 3;
+    double length;
+    const char *unit = mf_target_sanity_length(scene, &length);
+    if (target->bins.low < 0.5 * target->bins.width ||
+        target->g[0] < fmax(seen, standard_errors * target->error[0]))
+        return;
+    mf_target_sanity_warn(listener,
+                          "mesofit: warning: target.%s: its first row, at %.4g %s, has g = %.3g: "
+                          "nearer pairs are taken for none, as if rows of 0 were missing; give g "
+                          "from where it is 0, or from r = 0",
+                          name, mf_rdf_bins_centre(&target->bins, 0) * length, unit, target->g[0]);
+}
+
+/// A potential that ends before its "cutoff" is not the one that was asked for.
+static void warn_of_missing_end(const struct target_rdf *target, const char *name,
+                                const struct scene *scene,
+                                const struct target_sanity_listener *listener) {
+    const double end = mf_rdf_bins_edge(&target->bins, target->bins.count);
+    const double cutoff = target->parameters.cutoff;
+    double length;
+    const char *unit = mf_target_sanity_length(scene, &length);
+    if (cutoff > end + target->bins.width)
+        mf_target_sanity_warn(listener,
+                              "mesofit: warning: target.%s.cutoff: %.4g %s is beyond the end of "
+                              "the table: g(r) and the potential end at %.4g %s",
+                              name, cutoff * length, unit, end * length, unit);
+}
+
+void mf_target_sanity_report_reading(const struct target_rdf *target, const char *name,
+                                     const struct scene *scene,
+                                     const struct target_sanity_listener *listener) {
+    const struct target_resampling *r = &target->resampling;
+    double length;
+    char error[96] = "";
+    const char *unit = mf_target_sanity_length(scene, &length);
+    if (target->negative > 0)
+        mf_target_sanity_warn(listener,
+                              "target %s: g is below 0 in %zu rows, by %.2g at most: taken as 0",
+                              name, target->negative, -target->min);
+    warn_of_missing_rows(target, name, scene, listener);
+    warn_of_missing_end(target, name, scene, listener);
+    if (r->points == 0)
+        return;
+    if (r->assumed)
+        snprintf(error, sizeof error, ", each with the error %.2g that is assumed,", r->error);
+    else if (r->error > 0)
+        snprintf(error, sizeof error, ", which scatter by %.2g in g and %.2g %s in r,", r->error,
+                 r->error_in_r * length, unit);
+    mf_target_sanity_warn(listener,
+                          "target %s: r is not equally spaced (steps of %.3g to %.3g %s): its %zu "
+                          "points%s are read at equal bins of %.4g %s by cubic interpolation",
+                          name, r->shortest * length, r->longest * length, unit, r->points, error,
+                          target->bins.width * length / (double)target->joined, unit);
+}
+
+void mf_target_sanity_report_normalisation(const struct normalisation *n,
+                                           const struct target_sanity_listener *listener) {
+    if (n->found)
+        mf_target_sanity_warn(
+            listener,
+            "target.rdf: g(r) is too %s at all distances: it is divided by %.4f(%.0f); "
+            "\"normalisation\" of the target sets another factor, 1 for none",
+            n->factor > 1 ? "large" : "small", n->factor, ceil(n->error * 1e4));
+}
+
+// Whether it is a homogeneous liquid --------------------------------------------------------------
+
+static const double standard_errors = 3, frozen = 3.3;
+
+/// How many times as compressible as an ideal gas a fluid of two phases is at least: Lennard-Jones
+/// at 1.1 T_c has 2.8, dumbbells of two phases whose g stays above 1 have 2.5, liquids are below 1.
+static const double several = 3, several_above_1 = 2;
+
+/// Mean of g over the last quarter from which on it is said to stay above 1.
+static const double above_1 = 1.01;
+
+/// S at a wave number and its standard error.
+struct wave {
+    double value, error;
+};
+
+static struct wave wave_of(const struct target_state *state, double density, double q) {
+    const double area = 4 * acos(-1) * density / q * state->bins->width;
+    double sum = 0, variance = 0;
+    for (size_t k = 0; k < state->bins->count; k++) {
+        const double r = mf_rdf_bins_centre(state->bins, k), part = r * sin(q * r);
+        sum += part * (state->g[k] - 1);
+        variance += isnan(state->error[k]) ? 0 : pow(part * state->error[k], 2);
+    }
+    return (struct wave){1 + area * sum, area * sqrt(variance)};
+}
+
+/// The highest of 200 wave numbers about the first peak of liquids and crystals, 2π ρ^(1/3).
+static struct wave highest_of(const struct target_state *state) {
+    enum { WAVES = 200 };
+    const double density = (double)state->count / mf_box_volume(state->box);
+    const double unit = 2 * acos(-1) * cbrt(density);
+    struct wave highest = {0, 0};
+    for (int k = 0; k < WAVES; k++) {
+        const struct wave now = wave_of(state, density, unit * (0.5 + 2.0 * k / WAVES));
+        if (now.value > highest.value)
+            highest = now;
+    }
+    return highest;
+}
+
+bool mf_target_state_print(const struct target_state *state, char line[TARGET_STATE_LINE]) {
+    if (state->box->dimensions != 3 || state->count < 2)
+        return false;
+    const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
+        state->bins, state->g, state->error, state->box, state->count, state->inside);
+    const double value = kb.compressibility / (1 + state->bound);
+    const double error = kb.compressibility_error / (1 + state->bound);
+    if (value - standard_errors * error > (state->tail > above_1 ? several_above_1 : several)) {
+        char tail[64] = "";
+        if (state->tail > above_1)
+            snprintf(tail, sizeof tail, ", and g ends at %.3f", state->tail);
+        snprintf(line, TARGET_STATE_LINE,
+                 "1 + rho G%s = %.3g(%.1g)%s: of two phases, or near a critical point? A fit may "
+                 "condense; take g of one phase with its density, a shorter \"cutoff\", or give "
+                 "\"pressure\"",
+                 state->bound > 0 ? " of the molecules" : "", value, error, tail);
+        return true;
+    }
+    if (state->bound > 0)
+        return false;
+    const struct wave highest = highest_of(state);
+    if (!(highest.value - standard_errors * highest.error > frozen))
+        return false;
+    snprintf(line, TARGET_STATE_LINE,
+             "its structure factor has a peak of %.3g, while liquids freeze at 2.85: of a crystal? "
+             "A fit begins from disorder and finds no potential for it; take g of the liquid",
+             highest.value);
+    return true;
+}
+
+bool mf_target_state_print_whole(const struct target_state *state,
+                                 const struct target_rdf_whole *whole,
+                                 char line[TARGET_STATE_LINE]) {
+    struct target_state other = *state;
+    if (whole->bins.count == 0)
+        return false;
+    other.bins = &whole->bins;
+    other.g = whole->g;
+    other.error = whole->error;
+    return mf_target_state_print(&other, line);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // What `mesofit simulate` measures of pairs, from outside: escape times and the force covariance.
-#include "targets/target_etd.h"
+#include "targets/target_files.h"
 #include "shared/is_close.h"
 #include "shared/results.h"
 #include "shared/run_program.h"

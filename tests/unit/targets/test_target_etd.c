@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "targets/target_curve.h"
-#include "targets/target_etd.h"
+#include "targets/target_files.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"

@@ -2,7 +2,7 @@
 #include "targets/target_files.h"
 
 #include "io/units_scale.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"

@@ -2,7 +2,7 @@
 //
 // g(r) whose state is known: an ideal gas, correlations of Ornstein and Zernike about a critical
 // point, and a crystal of face-centred cubes whose beads tremble.
-#include "targets/target_sanity_state.h"
+#include "targets/target_sanity.h"
 #include "shared/testing.h"
 
 #include <math.h>
