@@ -6,7 +6,7 @@
 #include "engines/engine_folder.h"
 #include "forces/molecules.h"
 #include "defaults/fit_engine.h"
-#include "trajectory/frame_box.h"
+#include "trajectory/frame.h"
 
 #include <math.h>
 #include <string.h>

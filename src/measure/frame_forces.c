@@ -172,8 +172,8 @@ static void visit_terms(const struct measured_molecules *molecules, take_term *t
                 for (int64_t m = 0; m < topology->kind[k].count; m++) {
                     size_t bead[BONDED_MAX_TERM_BEADS];
                     for (int b = 0; b < mf_bonded_kinds[order]->beads; b++)
-                        bead[b] = molecules->match
-                                      .bead[topology_id(&topology->kind[k], m, term->bead[b])];
+                        bead[b] =
+                            molecules->bead[topology_id(&topology->kind[k], m, term->bead[b])];
                     take(context, order, term->group, bead);
                 }
             }

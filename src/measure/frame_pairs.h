@@ -3,7 +3,7 @@
 #pragma once
 
 #include "base/status.h"
-#include "trajectory/frame_box.h"
+#include "trajectory/frame.h"
 #include "observe/weighted_density.h"
 #include "system/composition.h"
 #include "system/cell_pairs.h"

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "base/parallel.h"
-#include "measure/measured_forces.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,7 +72,7 @@ static enum status take_molecules(struct measured *measured) {
                                     &measured->pairs.composition));
     const struct topology *const topology = &own->molecules->topology;
     for (size_t id = 0; id < topology->particles; id++)
-        measured->molecule[own->match.bead[id]] = topology->molecule[id];
+        measured->molecule[own->bead[id]] = topology->molecule[id];
     measured->pairs.molecule = measured->molecule;
     measured->pairs.within = true;
     return STATUS_OK;

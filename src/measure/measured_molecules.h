@@ -4,8 +4,8 @@
 /// frame, each molecule whole, in a box without end.
 #pragma once
 
-#include "measure/molecule_match.h"
 #include "forces/molecules.h"
+#include "trajectory/mapping.h"
 
 /// Molecules that a trajectory may have, as a file tells of them. Borrowed.
 struct measured_molecules_plan {
@@ -18,7 +18,8 @@ struct measured_molecules_plan {
 struct measured_molecules {
     struct molecules *molecules; ///< completed; borrowed
     const struct mapping *mapping;
-    struct molecule_match match;
+    size_t *bead; ///< shape [particles], by the id that the topology gives: number in the
+                  ///< mapping
     struct particles particles; ///< the beads where the mapping has them
     size_t max_beads;           ///< of a molecule
     int *order, *parent;        ///< shape [kinds, max_beads]: mf_topology_walk
@@ -26,7 +27,8 @@ struct measured_molecules {
     size_t excluded_count;
 };
 
-/// Find the molecules among the beads. Fails: as mf_molecule_match.
+/// Find the molecules among the beads. Fails: BAD_INPUT, naming the file and the bead that does not
+/// fit; NO_MEMORY. Tested: test_molecule_match.
 enum status mf_measured_molecules_begin(struct measured_molecules *measured,
                                         const struct measured_molecules_plan *plan,
                                         const struct mapping *mapping,

@@ -5,13 +5,105 @@
 // velocities, forces, images, ids and the box's edges may change in time; masses and species are
 // those of the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
 #include "base/memory.h"
-#include "trajectory/h5md_canary.h"
+#include "base/status.h"
 #include "trajectory/h5md_file.h"
-#include "trajectory/h5md_topology.h"
 #include "trajectory/trajectory.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <math.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stddef.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+// The canary --------------------------------------------------------------------------------------
+
+// A process that goes ahead: what HDF5 crashes on, of a damaged file, ends it alone.
+//
+// HDF5 1.10 believes sizes, addresses and chunks that a damaged file tells it. A child does all
+// that is done with the file before its parent does it, and says so; where it has died, the file
+// is refused. Another processor works for it, if there is one. Tested: test_trajectory_h5md.
+
+struct h5md_canary {
+    pid_t child;   ///< 0: none, or it has ended
+    int from;      ///< it
+    size_t passed; ///< steps that it has come through
+};
+
+/// It dies in silence: no handler of anybody, no core.
+static void be_mortal(void) {
+    static const int signals[] = {SIGSEGV, SIGBUS,  SIGFPE, SIGILL,  SIGABRT,
+                                  SIGPIPE, SIGTERM, SIGHUP, SIGUSR1, SIGINT};
+    for (size_t k = 0; k < sizeof signals / sizeof *signals; k++)
+        signal(signals[k], signals[k] == SIGINT ? SIG_IGN : SIG_DFL);
+    setrlimit(RLIMIT_CORE, &(const struct rlimit){0});
+}
+
+/// Begin. `go` is called in the child, which ends with it; it tells of each step.
+static enum status canary_begin(struct h5md_canary *canary, void (*go)(void *context, int to),
+                                void *context) {
+    int ends[2];
+    *canary = (struct h5md_canary){0};
+    if (pipe(ends) != 0)
+        return mf_status_fail(STATUS_NO_MEMORY, "no pipe to a process that reads HDF5 ahead");
+    canary->child = fork();
+    if (canary->child == 0) {
+        be_mortal();
+        close(ends[0]);
+        go(context, ends[1]);
+        _exit(0);
+    }
+    close(ends[1]);
+    canary->from = ends[0];
+    fcntl(canary->from, F_SETFD, FD_CLOEXEC);
+    if (canary->child > 0)
+        return STATUS_OK;
+    *canary = (struct h5md_canary){0};
+    close(ends[0]);
+    return mf_status_fail(STATUS_NO_MEMORY, "no process is left that could read HDF5 ahead");
+}
+
+/// In the child: one more step is done.
+static void canary_tell(int to) {
+    if (write(to, "", 1) != 1)
+        _exit(0); // nobody listens any more
+}
+
+/// Whether it died of a signal.
+static bool has_died(struct h5md_canary *canary) {
+    int how = 0;
+    close(canary->from);
+    while (waitpid(canary->child, &how, 0) < 0 && errno == EINTR)
+        continue;
+    canary->child = 0;
+    return WIFSIGNALED(how);
+}
+
+/// Wait until it has come through so many steps, or has ended by itself. Fails: BAD_INPUT, naming
+/// the file, if it died of one.
+static enum status canary_wait(struct h5md_canary *canary, size_t steps, const char *file) {
+    char byte;
+    while (canary->child > 0 && canary->passed < steps) {
+        const ssize_t got = read(canary->from, &byte, 1);
+        canary->passed += got == 1;
+        if (got == 0 && has_died(canary))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: HDF5 crashes where it reads it: it is damaged", file);
+    }
+    return STATUS_OK;
+}
+
+static void canary_end(struct h5md_canary *canary) {
+    if (canary->child <= 0)
+        return;
+    kill(canary->child, SIGKILL);
+    has_died(canary);
+}
 
 /// What goes before the numbers of a frame in its raw bytes.
 struct header {
@@ -40,17 +132,17 @@ static enum status open_file(struct trajectory *trajectory) {
     return STATUS_OK;
 }
 
-static enum status open(struct trajectory *trajectory) {
+static enum status open_trajectory(struct trajectory *trajectory) {
     struct state *const state = trajectory->state;
-    TRY(mf_h5md_canary_begin(&state->canary, go_ahead, trajectory));
-    TRY(mf_h5md_canary_wait(&state->canary, 1, trajectory->file));
+    TRY(canary_begin(&state->canary, go_ahead, trajectory));
+    TRY(canary_wait(&state->canary, 1, trajectory->file));
     return open_file(trajectory);
 }
 
-static void close(struct trajectory *trajectory) {
+static void close_trajectory(struct trajectory *trajectory) {
     struct state *const state = trajectory->state;
     mf_h5md_file_close(&state->h5md);
-    mf_h5md_canary_end(&state->canary);
+    canary_end(&state->canary);
 }
 
 // Fetching ----------------------------------------------------------------------------------------
@@ -130,7 +222,7 @@ static enum status fetch(struct trajectory *trajectory, struct trajectory_frame 
     *more = at < state->h5md.position.frames;
     if (!*more)
         return STATUS_OK;
-    TRY(mf_h5md_canary_wait(&state->canary, at + 2, trajectory->file));
+    TRY(canary_wait(&state->canary, at + 2, trajectory->file));
     return fetch_numbers(trajectory, frame);
 }
 
@@ -210,14 +302,14 @@ static void go_ahead(void *context, int to) {
     struct trajectory *const trajectory = context;
     struct trajectory_frame frame = {.file = trajectory->file};
     enum status status = open_file(trajectory);
-    mf_h5md_canary_tell(to);
+    canary_tell(to);
     size_t *const at = &trajectory->source.frame;
     for (; status == STATUS_OK && *at < trajectory->frames; ++*at) {
         frame.raw.size = 0;
         status = fetch_numbers(trajectory, &frame);
         if (status == STATUS_OK && *at == 0)
             status = describe(trajectory, &frame);
-        mf_h5md_canary_tell(to);
+        canary_tell(to);
     }
 }
 
@@ -311,8 +403,8 @@ const struct trajectory_format mf_format_h5md = {
     .unit_source = TRAJECTORY_UNITS_GIVEN,
     .state_size = sizeof(struct state),
     .recognise = recognise,
-    .open = open,
-    .close = close,
+    .open = open_trajectory,
+    .close = close_trajectory,
     .fetch = fetch,
     .peek = peek,
     .describe = describe,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trajectory/h5md_topology.h"
+#include "trajectory/h5md_file.h"
 
 #include "base/memory.h"
 

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "base/names.h"
 #include "trajectory/elements.h"
-#include "trajectory/mapping_build.h"
 
 #include <ctype.h>
 #include <math.h>

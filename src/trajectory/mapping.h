@@ -44,6 +44,11 @@ enum status mf_mapping_init_atoms(struct mapping *mapping, const struct structur
                                   const char *const *types, const double *mass, size_t count,
                                   const char *file) MUST_USE;
 
+/// A step of mf_mapping_init: find types, beads and their atoms, with weights that are 0 or, for
+/// centres of geometry, 1/count.
+enum status mf_mapping_build(struct mapping *mapping, const struct mapping_plan *plan,
+                             const struct structure *structure) MUST_USE;
+
 void mf_mapping_clear(struct mapping *mapping);
 
 /// Centres of beads: R = Σ w_i r_i with w_i = m_i/Σ m or 1/n, V = Σ w_i v_i. Each bead is made

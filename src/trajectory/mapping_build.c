@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "trajectory/mapping_build.h"
+#include "trajectory/mapping.h"
 
 #include "base/memory.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/measure_doubts.h"
 
-#include "trajectory/frame_box.h"
+#include "trajectory/frame.h"
 
 #include <math.h>
 

@@ -39,7 +39,7 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
                           "mesofit: warning: the MSD grows as t^%.2g there: the beads do not "
                           "diffuse yet, and that is no D; a longer trajectory has one",
                           growth);
-    const struct frame_motion *const path = &motion->path;
+    const struct measured_path *const path = &motion->path;
     if (path->far > 0)
         mf_progress_print(
             progress,
@@ -99,7 +99,7 @@ static bool list_atoms(const struct measure_result *result, const struct topolog
     bool sorted = true;
     size_t length = 0, last = 0;
     for (int n = 0; n < kind->beads && length < size; n++) {
-        const size_t bead = result->measured->molecules.match.bead[topology_id(kind, 0, n)];
+        const size_t bead = result->measured->molecules.bead[topology_id(kind, 0, n)];
         const size_t atom = mapping->atom[mapping->bead[bead].first] + 1;
         length += (size_t)snprintf(text + length, size - length, n ? ", %zu" : "%zu", atom);
         sorted = sorted && atom > last;

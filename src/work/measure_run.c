@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "scene/molecules_file.h"
 #include "io/units.h"
-#include "measure/measured_forces.h"
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"

@@ -88,7 +88,7 @@ faults=$(
     only_in 'src/\(bench/bench_lammps\|export/export_lammps\).c' '"([^" ]*/)?lmp[" ]' 'LAMMPS'
     only_in src/report/program.c '\b(vfork|popen|system|exec[lv]p?e?|posix_spawnp?) ?\(' \
         'starting a program'
-    only_in 'src/\(report/program\|trajectory/h5md_canary\).c' '\bfork ?\(' 'starting a process'
+    only_in 'src/\(report/program\|trajectory/format_h5md\).c' '\bfork ?\(' 'starting a process'
     only_in src/base/clock.c 'pthread_(cond|mutex|rwlock)_timed|sem_timedwait|CLOCK_REALTIME|gettimeofday|\btime ?\((NULL|0|&)' \
         'waiting until a time, by a clock that is never set back,'
     only_in 'src/\(io/manifest\|io/tracked_files*\|io/output\|report/figure_script\|live/live_folder\|report/film\|bench/bench_lammps\|engines/engine_folder\).c' \

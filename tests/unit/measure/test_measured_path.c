@@ -2,7 +2,7 @@
 //
 // Beads whose ways are known, in a box that breathes, seen with images and without.
 #include "base/rng.h"
-#include "measure/frame_motion.h"
+#include "measure/measured_motion.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -46,7 +46,7 @@ static void show(const struct ways *ways, int t, enum images images,
 }
 
 /// The mean square of what the paths are off the truth, of which the squares are returned.
-static double follow(double most, enum images images, struct frame_motion *motion, double *truth) {
+static double follow(double most, enum images images, struct measured_path *motion, double *truth) {
     static struct ways ways;
     struct trajectory_frame frame = {0};
     struct box_vectors box;
@@ -54,12 +54,12 @@ static double follow(double most, enum images images, struct frame_motion *motio
     double off = 0, gone[3][BEADS] = {{0}};
     walk(&ways, most);
     *truth = 0;
-    assert_ok(mf_frame_motion_init(motion, BEADS));
+    assert_ok(mf_measured_path_init(motion, BEADS));
     for (int t = 0; t < FRAMES; t++) {
         show(&ways, t, images, &frame);
         assert_ok(mf_frame_box_find(&box, &frame));
         assert_ok(mf_frame_box_places(&box, &frame, places));
-        const double *state = mf_frame_motion_add(motion, &frame, places);
+        const double *state = mf_measured_path_add(motion, &frame, places);
         for (int i = 0; t > 0 && i < 3; i++)
             for (int k = 0; k < BEADS; k++) {
                 gone[i][k] += 0.5 * (edge_of(t) + edge_of(t - 1)) *
@@ -73,36 +73,36 @@ static double follow(double most, enum images images, struct frame_motion *motio
 }
 
 /// Steps of two boxes; without images they are lost, and it is counted that they may be.
-static void test_frame_motion_goes_whole_boxes_where_images_are_told(void **state) {
+static void test_measured_path_goes_whole_boxes_where_images_are_told(void **state) {
     (void)state;
-    struct frame_motion motion;
+    struct measured_path motion;
     double truth;
     assert_true(follow(2, TOLD, &motion, &truth) < 1e-7);
     assert_true(truth > 10);
     assert_int_equal(motion.far, 0);
-    mf_frame_motion_clear(&motion);
+    mf_measured_path_clear(&motion);
     assert_true(follow(2, WRAPPED, &motion, &truth) > 1);
     assert_true((double)motion.far > 0.05 * (double)motion.steps);
-    mf_frame_motion_clear(&motion);
+    mf_measured_path_clear(&motion);
 }
 
 /// Steps of a tenth of the box are the same with and without, and where a file calls unwrapped what
 /// is not, so that beads seem to jump back across the box.
-static void test_frame_motion_does_not_believe_images_that_jump(void **state) {
+static void test_measured_path_does_not_believe_images_that_jump(void **state) {
     (void)state;
     for (int images = WRAPPED; images <= CALLED_UNWRAPPED; images++) {
-        struct frame_motion motion;
+        struct measured_path motion;
         double truth;
         assert_true(follow(0.09, (enum images)images, &motion, &truth) < 1e-7);
         assert_int_equal(motion.far, 0);
-        mf_frame_motion_clear(&motion);
+        mf_measured_path_clear(&motion);
     }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_frame_motion_goes_whole_boxes_where_images_are_told),
-        cmocka_unit_test(test_frame_motion_does_not_believe_images_that_jump),
+        cmocka_unit_test(test_measured_path_goes_whole_boxes_where_images_are_told),
+        cmocka_unit_test(test_measured_path_does_not_believe_images_that_jump),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
