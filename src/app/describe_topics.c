@@ -7,7 +7,7 @@
 #include "defaults/fit_file.h"
 #include "defaults/fit_unknowns.h"
 #include "defaults/methods.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/measure.h"
 #include "observe/rdf_observable.h"
 #include "trajectory/mapping_plan.h"

@@ -6,7 +6,7 @@
 #include "defaults/methods.h"
 #include "targets/target_sanity.h"
 #include "io/units_scale.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 #include "inversion/inversion.h"
 #include "problem/group_kind.h"

@@ -3,7 +3,7 @@
 
 #include "defaults/fit_states.h"
 #include "forces/many_body.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include "inversion/inversion_state.h"
 #include "inversion/inversion_states.h"
 #include "inversion/method_steps.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>

@@ -27,7 +27,7 @@ void mf_inversion_kirkwood_buff_clear(struct inversion_kirkwood_buff *kb);
 void mf_inversion_kirkwood_buff_measure(struct inversion_state *state);
 
 /// Slopes ∂G/∂Φ_b = −cov(G, S_b)/k_B T, G that of a configuration
-/// (observe/kirkwood_buff_waves.h), of which the present samples make this share, and those before
+/// (observe/kirkwood_buff.h), of which the present samples make this share, and those before
 /// the rest: as of C. They are noisier than C: a few long waves have little to do with the energy
 /// of all pairs.
 void mf_inversion_kirkwood_buff_respond(struct inversion_state *state, double share);

@@ -2,7 +2,7 @@
 #include "inversion/inversion.h"
 
 #include "inversion/inversions.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 // How far several states are from their targets together.
 #include "inversion/inversion_state.h"
 #include "inversion/inversion_states.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 
 #include <math.h>
 

@@ -40,8 +40,8 @@ static enum status begin_waves(struct sampler *sampler, const struct sampler_sys
 static enum status begin_densities(struct sampler *sampler, const struct sampler_system *system,
                                    const struct weighted_density_settings *settings) {
     TRY_ARRAY(sampler->densities, 1);
-    return mf_density_list_init(sampler->densities, settings, system->box,
-                                (size_t)mf_composition_particles(system->composition));
+    return mf_weighted_density_list_init(sampler->densities, settings, system->box,
+                                         (size_t)mf_composition_particles(system->composition));
 }
 
 enum status mf_sampler_init(struct sampler *sampler, enum sampler_kind kind,
@@ -83,7 +83,7 @@ void mf_sampler_clear(struct sampler *sampler) {
     mf_kirkwood_buff_waves_clear(&sampler->kirkwood_buff);
     mf_whole_molecules_clear(&sampler->whole);
     if (sampler->densities)
-        mf_density_list_clear(sampler->densities);
+        mf_weighted_density_list_clear(sampler->densities);
     mf_memory_free(sampler->densities);
     *sampler = (struct sampler){0};
 }
@@ -205,7 +205,7 @@ enum status mf_sampler_sample(struct sampler *sampler, uint64_t sweeps, double *
     for (size_t a = 0; a < bins; a++)
         sample[a] = pairs.counts[a] * weight;
     if (sampler->densities)
-        TRY(mf_density_list_find(sampler->densities, mf_sampler_particles(sampler)));
+        TRY(mf_weighted_density_list_find(sampler->densities, mf_sampler_particles(sampler)));
     double *sum = count_groups(sampler, sample + bins);
     sum[SAMPLER_VIRIAL] = pairs.sums.virial;
     sum[SAMPLER_ENERGY] = pairs.sums.energy;

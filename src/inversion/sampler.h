@@ -9,8 +9,8 @@
 #include "dynamics/molecule_moves.h"
 #include "forces/many_body.h"
 #include "observe/bonded_distribution.h"
-#include "observe/density_list.h"
-#include "observe/kirkwood_buff_waves.h"
+#include "observe/weighted_density.h"
+#include "observe/kirkwood_buff.h"
 #include "problem/sampling_engine.h"
 #include "system/whole_molecules.h"
 

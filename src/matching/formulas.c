@@ -10,7 +10,7 @@
 #include "formulas_state.h"
 #include "inversion/inversions.h"
 #include "matching/matchings.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 
 #include <assert.h>
 #include <math.h>

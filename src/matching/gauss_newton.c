@@ -11,7 +11,7 @@
 #include "base/rng.h"
 #include "matching/matchings.h"
 #include "matching/population.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 
 #include <assert.h>

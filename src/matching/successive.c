@@ -9,7 +9,7 @@
 #include "matching/population.h"
 #include "inversion/inversions.h"
 #include "matching/matchings.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 
 #include <assert.h>
 #include <math.h>

@@ -2,6 +2,7 @@
 #include "measure/frame_features.h"
 
 #include "base/memory.h"
+#include "observe/sample_blocks.h"
 #include <math.h>
 #include <string.h>
 
@@ -20,18 +21,6 @@ void mf_frame_features_clear(struct frame_features *features) {
     *features = (struct frame_features){0};
 }
 
-/// Join blocks two by two.
-static void halve(struct frame_features *features) {
-    const size_t n = features->features;
-    for (size_t b = 0; b < FEATURE_BLOCKS / 2; b++)
-        for (size_t k = 0; k < n; k++)
-            features->block[b * n + k] =
-                features->block[2 * b * n + k] + features->block[(2 * b + 1) * n + k];
-    memset(features->block + FEATURE_BLOCKS / 2 * n, 0,
-           FEATURE_BLOCKS / 2 * n * sizeof *features->block);
-    features->each *= 2;
-}
-
 static size_t range_of(const struct frame_pairs_plan *plan, size_t bin) {
     return bin * FEATURE_RANGES / plan->bins;
 }
@@ -45,8 +34,10 @@ enum status mf_frame_features_add(struct frame_features *features,
         features->each = 1;
         TRY_ARRAY(features->block, FEATURE_BLOCKS * features->features);
     }
-    if (features->frames == FEATURE_BLOCKS * features->each)
-        halve(features);
+    if (features->frames == FEATURE_BLOCKS * features->each) {
+        mf_sample_blocks_join(features->block, FEATURE_BLOCKS, features->features);
+        features->each *= 2;
+    }
     double *const block = features->block + features->frames / features->each * features->features;
     block[0] += volume;
     for (size_t pair = 0; pair < types; pair++)

@@ -9,7 +9,7 @@
 #include "base/statistics.h"
 #include "forces/bonded.h"
 #include "io/data_table.h"
-#include "observe/bonded_state.h"
+#include "observe/bonded_counts.h"
 #include "observe/measure.h"
 
 #include <math.h>
@@ -92,7 +92,6 @@ static enum status begin(struct bonded_state *s, int order, const struct bonded_
                               mf_bonded_kinds[order]->plural);
     *s = (struct bonded_state){
         .molecules = molecules, .order = order, .dimensions = configuration->dimensions};
-    TRY(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
     for (int g = 0; g < molecules->groups[order]; g++) {
         s->bins[g] = settings->bins > 0
                          ? choose_bins(molecules, order, settings->bins, configuration->temperature)
@@ -101,14 +100,13 @@ static enum status begin(struct bonded_state *s, int order, const struct bonded_
     }
     s->parts = (size_t)molecules->topology.molecules;
     s->parts = s->parts < MAX_PARTS ? s->parts : MAX_PARTS;
-    TRY_ARRAY(s->counts, s->blocks.count * s->first[molecules->groups[order]]);
-    TRY_ARRAY(s->of_part, s->parts * s->first[molecules->groups[order]]);
-    return STATUS_OK;
+    const size_t row = s->first[molecules->groups[order]];
+    TRY_ARRAY(s->of_part, s->parts * row);
+    return mf_sample_blocks_init(&s->blocks, (size_t)plan->samples, row);
 }
 
 static void clear(void *state) {
     struct bonded_state *s = state;
-    mf_memory_free(s->counts);
     mf_memory_free(s->of_part);
     mf_sample_blocks_clear(&s->blocks);
     *s = (struct bonded_state){0};
@@ -181,11 +179,7 @@ void mf_bonded_distribution_count(const struct molecules *molecules, int order, 
 static enum status sample(void *state, const struct configuration *configuration) {
     struct bonded_state *s = state;
     const int groups = s->molecules->groups[s->order];
-    if (mf_sample_blocks_are_full(&s->blocks)) {
-        mf_sample_blocks_join(&s->blocks, s->counts, s->first[groups]);
-        mf_sample_blocks_double(&s->blocks);
-    }
-    double *counts = s->counts + mf_sample_blocks_take(&s->blocks) * s->first[groups];
+    double *counts = mf_sample_blocks_next(&s->blocks);
     for (int g = 0; g < groups; g++)
         if (s->bins[g].count > 0)
             count_group(s->molecules, s->order, g, &s->bins[g], configuration->particles,
@@ -196,10 +190,8 @@ static enum status sample(void *state, const struct configuration *configuration
 
 static size_t spans(void *state, struct memory_span *spans) {
     struct bonded_state *s = state;
-    const size_t row = s->first[s->molecules->groups[s->order]] * sizeof *s->counts;
-    spans[0] = (struct memory_span){s->counts, s->blocks.count * row};
-    spans[1] = (struct memory_span){s->of_part, s->parts * row};
-    return 2 + mf_sample_blocks_spans(&s->blocks, spans + 2);
+    spans[0] = (struct memory_span){s->of_part, s->parts * s->blocks.row * sizeof *s->of_part};
+    return 1 + mf_sample_blocks_spans(&s->blocks, spans + 1);
 }
 
 // Results -----------------------------------------------------------------------------------------

@@ -4,42 +4,50 @@
 #include "base/memory.h"
 #include "base/statistics.h"
 #include "io/data_table.h"
+#include "observe/measure.h"
 
 #include <math.h>
 #include <string.h>
 
+struct density_profile_plan {
+    struct composition composition;
+    size_t bins, samples; ///< samples 0: as many as there will be
+    int axis;
+    bool masses; ///< beads have masses, in u, and volumes are in nm³
+};
+
+/// All zero is none.
+struct density_profile {
+    struct density_profile_plan plan;
+    struct sample_blocks
+        blocks;    ///< of densities, of types and, behind them, their masses, times bins
+    double *block; ///< of the sample that is being taken
+};
+
+/// Add a bead of it. @param[in] share   of the way along the box, from 0 to 1
+/// @param[in] density  one over the volume of a bin
+static inline void density_profile_add(struct density_profile *profile, int type, double share,
+                                       double density, double mass) {
+    const size_t bins = profile->plan.bins, bin = (size_t)(share * (double)bins);
+    const size_t at = (size_t)type * bins + (bin < bins ? bin : bins - 1);
+    profile->block[at] += density;
+    if (profile->plan.masses)
+        profile->block[(size_t)profile->plan.composition.types * bins + at] += density * mass;
+}
+
 /// 1 u/nm³ [g/cm³].
 static const double gram_per_cubic_centimetre = UNITS_ATOMIC_MASS * 1e3 / 1e-21;
 
-enum status mf_density_profile_init(struct density_profile *profile,
-                                    const struct density_profile_plan *plan) {
+static enum status density_profile_init(struct density_profile *profile,
+                                        const struct density_profile_plan *plan) {
     *profile = (struct density_profile){.plan = *plan};
-    profile->row = (size_t)plan->composition.types * plan->bins * (plan->masses ? 2 : 1);
-    TRY(mf_sample_blocks_init(&profile->blocks, plan->samples));
-    TRY_ARRAY(profile->sums, profile->blocks.count * profile->row);
-    return STATUS_OK;
+    const size_t row = (size_t)plan->composition.types * plan->bins * (plan->masses ? 2 : 1);
+    return mf_sample_blocks_init(&profile->blocks, plan->samples, row);
 }
 
-void mf_density_profile_clear(struct density_profile *profile) {
+static void density_profile_clear(struct density_profile *profile) {
     mf_sample_blocks_clear(&profile->blocks);
-    mf_memory_free(profile->sums);
     *profile = (struct density_profile){0};
-}
-
-void mf_density_profile_next(struct density_profile *profile) {
-    struct sample_blocks *const blocks = &profile->blocks;
-    if (mf_sample_blocks_are_full(blocks)) {
-        mf_sample_blocks_join(blocks, profile->sums, profile->row);
-        mf_sample_blocks_double(blocks);
-    }
-    profile->block = profile->sums + mf_sample_blocks_take(blocks) * profile->row;
-}
-
-size_t mf_density_profile_spans(struct density_profile *profile, struct memory_span *spans) {
-    const size_t n = mf_sample_blocks_spans(&profile->blocks, spans);
-    const size_t size = profile->blocks.count * profile->row * sizeof *profile->sums;
-    spans[n] = (struct memory_span){profile->sums, size};
-    return n + 1;
 }
 
 /// A curve over the bins: of one type, or of the sum of several.
@@ -53,7 +61,7 @@ struct profile_curve {
 static double sum_at(const struct density_profile *profile, const struct profile_curve *curve,
                      size_t block, size_t bin) {
     const size_t bins = profile->plan.bins;
-    const double *const row = profile->sums + block * profile->row;
+    const double *const row = profile->blocks.sums + block * profile->blocks.row;
     double sum = 0;
     for (size_t type = curve->first; type < curve->first + curve->types; type++)
         sum += row[type * bins + bin];
@@ -143,12 +151,15 @@ static enum status add_curves(const struct density_profile *profile, int dimensi
     return STATUS_OK;
 }
 
-enum status mf_density_profile_write(const struct density_profile *profile, double length,
-                                     int dimensions, const struct observable_results *results) {
+/// Write density_profile.tsv: the middle of a bin; density and error of each type; with masses the
+/// same in g/cm³, and of all types together. Fails: IO, NO_MEMORY.
+/// @param[in] length  of the box along the axis
+static enum status density_profile_write(const struct density_profile *profile, double length,
+                                         int dimensions, const struct observable_results *results) {
     const size_t bins = profile->plan.bins;
     struct columns columns = {.count = 1};
     OWNED double *values = NULL;
-    TRY_ARRAY(values, bins + 2 * (profile->row + bins));
+    TRY_ARRAY(values, bins + 2 * (profile->blocks.row + bins));
     for (size_t k = 0; k < bins; k++)
         values[k] = ((double)k + 0.5) * length / (double)bins;
     snprintf(columns.name[0], sizeof columns.name[0], "%s[lambda]",
@@ -159,3 +170,101 @@ enum status mf_density_profile_write(const struct density_profile *profile, doub
 }
 
 const char *const mf_density_profile_axes[] = {"x", "y", "z", NULL};
+
+struct state {
+    struct density_profile profile;
+    int dimensions;
+    double *share; ///< shape [count]: where the beads are along the axis
+    double length; ///< of the box along it, summed over the samples
+};
+
+static void clear(void *state) {
+    struct state *s = state;
+    density_profile_clear(&s->profile);
+    mf_memory_free(s->share);
+    *s = (struct state){0};
+}
+
+/// Masses of a simulation are not in u.
+static enum status begin(void *state, const void *settings,
+                         const struct configuration *configuration,
+                         const struct measure_plan *plan) {
+    const struct density_profile_settings *const set = settings;
+    const struct density_profile_plan own = {.composition = *configuration->composition,
+                                             .bins = (size_t)set->bins,
+                                             .samples = (size_t)plan->samples,
+                                             .axis = set->axis,
+                                             .masses = configuration->mass != NULL};
+    struct state *s = state;
+    s->dimensions = configuration->dimensions;
+    if (set->axis >= s->dimensions)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "density_profile.axis: z; expected x or y in two dimensions");
+    TRY_ARRAY(s->share, configuration->count);
+    return density_profile_init(&s->profile, &own);
+}
+
+/// Slabs are parallel to the other vectors of the box, and counted along its height.
+static enum status sample(void *state, const struct configuration *configuration) {
+    struct state *s = state;
+    const double *const mass = configuration->mass;
+    const struct density_profile_plan *const plan = &s->profile.plan;
+    const double one = (double)plan->bins / configuration->box.volume;
+    mf_configuration_shares(configuration, plan->axis, s->share);
+    s->profile.block = mf_sample_blocks_next(&s->profile.blocks);
+    for (size_t k = 0; k < configuration->count; k++)
+        density_profile_add(&s->profile, mf_composition_type(&plan->composition, (uint32_t)k),
+                            s->share[k] - floor(s->share[k]), one, mass ? mass[k] : 0);
+    s->length += configuration->box.height[plan->axis];
+    return STATUS_OK;
+}
+
+static size_t spans(void *state, struct memory_span *spans) {
+    struct state *s = state;
+    spans[0] = (struct memory_span){&s->length, sizeof s->length};
+    return 1 + mf_sample_blocks_spans(&s->profile.blocks, spans + 1);
+}
+
+static enum status write(const void *state, const struct observable_results *results) {
+    const struct state *s = state;
+    const double samples = (double)s->profile.blocks.taken;
+    return density_profile_write(&s->profile, s->length / samples, s->dimensions, results);
+}
+
+/// Nanoseconds of a particle.
+static const double particle_cost = 5;
+
+static void explain(const void *settings, const struct simulation_setup *setup, double every,
+                    struct stages *stages) {
+    (void)setup;
+    mf_stages_add(stages, "density profile", true, particle_cost / every,
+                  "%lld bins, one step in %.0f",
+                  (long long)((const struct density_profile_settings *)settings)->bins, every);
+}
+
+static const struct field fields[] = {
+    {"axis", FIELD_CHOICE, offsetof(struct density_profile_settings, axis),
+     .choices = mf_density_profile_axes, .initial = 2, .unit = "", .help = "axis"},
+    {"bins", FIELD_INTEGER, offsetof(struct density_profile_settings, bins), .initial = 100,
+     .minimum = 1, .maximum = 100000, .unit = "", .help = "number"},
+    FIELD_END,
+};
+static const char *const files[] = {"density_profile.tsv", NULL};
+
+const struct observable mf_density_profile_observable = {
+    .name = "density_profile",
+    .of_places = true,
+    .summary = "number density along an axis",
+    .fields = fields,
+    .settings_size = sizeof(struct density_profile_settings),
+    .state_size = sizeof(struct state),
+    .begin = begin,
+    .clear = clear,
+    .sample = sample,
+    .spans = spans,
+    .write = write,
+    .explain = explain,
+    .stage = "density profile",
+    .files = files,
+    .figure = "density_profile",
+};

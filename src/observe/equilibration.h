@@ -2,6 +2,8 @@
 /// @file Where a series of samples begins to be in equilibrium.
 #pragma once
 
+#include "base/status.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -66,3 +68,22 @@ struct equilibration_drift mf_equilibration_drift(const double *series, size_t s
 static inline bool equilibration_drifts(const struct equilibration_drift *drift, size_t count) {
     return count > 0 && drift->evidence > 3 + log10((double)count);
 }
+
+/// Whether the samples of a simulation are those of equilibrium, and enough to estimate their own
+/// error, by two tests.
+///
+/// - They do not drift, by mf_equilibration_drift.
+/// - Ten of them are independent, by mf_statistics_inefficiency, where there are 50 to tell.
+///   With fewer, errors are too small, and a slow drift looks like a correlation.
+///
+/// Of series of n Gaussian samples with a memory of exp(−t/t_0) that are in equilibrium, with 40
+/// independent ones at least, it complains of less than 0.5 %; with 2 independent ones of more than
+/// 90 %. A series whose scatter is within rounding is in order, as are fewer than 20 samples.
+///
+/// Fails: UNCONVERGED with both parts, or the number of independent samples, in the message,
+/// NO_MEMORY. Tested: test_equilibrium.
+/// @param[in] name  "potential energy", for the message
+/// @param[in] unit  of it, reduced
+/// @param[in] series  shape [samples]
+enum status mf_equilibration_check(const char *name, const char *unit, const double *series,
+                                   size_t samples) MUST_USE;

@@ -121,7 +121,6 @@ enum status mf_etd_result(const struct etd *const *replicas, size_t count, doubl
 
 /// What goes with a checkpoint. The first span is `state`: read it before the others and call
 /// mf_etd_reserve, since their lengths depend on it.
-enum { ETD_SPANS = 7 };
 size_t mf_etd_spans(struct etd *etd, struct memory_span *spans);
 
 /// Room for state.followed records. Fails: NO_MEMORY.

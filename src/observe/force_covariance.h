@@ -22,22 +22,18 @@
 #include "base/fields.h"
 #include "base/memory.h"
 #include "dynamics/simulation.h"
+#include "observe/sample_blocks.h"
 
 struct force_covariance_plan {
     double range; ///< 0: the cutoff of ω [λ]
     int64_t bins;
 };
 
-extern const struct field mf_force_covariance_fields[];
-
-enum { FORCE_COVARIANCE_BLOCKS = 20 };
-
 struct force_covariance {
     double width; ///< of a bin [λ]
-    size_t bins, planned, samples;
+    size_t bins;
     double time_step;
-    double *products; ///< shape [FORCE_COVARIANCE_BLOCKS, bins]: Σ F_i · F_j    [(k_B T_0/λ)²]
-    double *pairs;    ///< shape [FORCE_COVARIANCE_BLOCKS, bins]
+    struct sample_blocks blocks; ///< of Σ F_i · F_j in each bin [(k_B T_0/λ)²], then of pairs
 };
 
 /// Prepare for `planned` samples.
@@ -57,15 +53,3 @@ void mf_force_covariance_sample(struct force_covariance *covariance,
 /// Tested: test_force_covariance (unit, physics).
 void mf_force_covariance_result(const struct force_covariance *covariance, double *kappa,
                                 double *error);
-
-/// Combine the results of two time steps; errors as of independent runs.
-/// @param[in]  time_step    of each [τ]; not equal
-/// @param[in]  kappa, error of each, shape [bins]
-/// @param[out] squared, squared_error  2 k_B T ω², shape [bins]
-/// Tested: test_force_covariance.
-void mf_force_covariance_extrapolate(const double time_step[2], const double *const kappa[2],
-                                     const double *const error[2], size_t bins, double *squared,
-                                     double *squared_error);
-
-enum { FORCE_COVARIANCE_SPANS = 3 };
-size_t mf_force_covariance_spans(struct force_covariance *covariance, struct memory_span *spans);

@@ -2,8 +2,13 @@
 #include "observe/force_equations.h"
 
 #include "base/memory.h"
+#include "io/data_table.h"
+#include "observe/sample_blocks.h"
+#include "trajectory/source.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool is_circle(const struct force_curve *curve) {
@@ -53,22 +58,13 @@ bool mf_force_equations_find(const struct force_curve *curve, double q, size_t *
     return true;
 }
 
-/// Join blocks of so many numbers two by two.
-static void join(double *block, size_t numbers) {
-    enum { HALF = FORCES_BLOCKS / 2 };
-    for (size_t b = 0; b < HALF; b++)
-        for (size_t k = 0; k < numbers; k++)
-            block[b * numbers + k] = block[2 * b * numbers + k] + block[(2 * b + 1) * numbers + k];
-    memset(block + HALF * numbers, 0, HALF * numbers * sizeof *block);
-}
-
 void mf_force_equations_add(struct force_equations *equations, const double *gram,
                             const double *product, const double *virial, double square) {
     const size_t entries = force_equations_entries(equations), size = equations->size;
     if (equations->frames == FORCES_BLOCKS * equations->each) {
-        join(equations->gram, entries);
-        join(equations->product, size);
-        join(equations->virial, size);
+        mf_sample_blocks_join(equations->gram, FORCES_BLOCKS, entries);
+        mf_sample_blocks_join(equations->product, FORCES_BLOCKS, size);
+        mf_sample_blocks_join(equations->virial, FORCES_BLOCKS, size);
         equations->each *= 2;
     }
     const size_t block = equations->frames / equations->each;
@@ -103,4 +99,170 @@ void mf_force_equations_scale(struct force_equations *equations, double length, 
                 *entry++ *= factor[k] * factor[l];
         }
     }
+}
+
+//
+// Comment lines say what the unknowns are:
+//   # frames 1000 64 beads 864 square 1.2e9
+//   # curve pairs A-B 13 0.1 0.01
+//   # curve bond backbone 40 0.2 0.005
+// the frames of all and of a block; the nodes of a curve, the first, and between two [nm, rad].
+
+static const char *kind_name(int order) {
+    return order == FORCES_OF_PAIRS ? "pairs" : mf_bonded_kinds[order]->name;
+}
+
+static enum status note(struct bytes *text, const char *format, ...)
+    __attribute__((format(printf, 2, 3), warn_unused_result));
+static enum status note(struct bytes *text, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const enum status status = mf_source_note(text, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+static enum status describe(const struct force_equations *equations, struct bytes *text) {
+    TRY(note(text, "Normal equations of forces [nm, rad, kJ/mol], summed over blocks of frames: b "
+                   "at the nodes, and the virial of the nodes by 3 V"));
+    TRY(note(text, "frames %zu %zu beads %.0f square %.17g", equations->frames, equations->each,
+             equations->beads, equations->square));
+    for (size_t n = 0; n < equations->curves; n++) {
+        const struct force_curve *const curve = &equations->curve[n];
+        TRY(note(text, "curve %s %s %zu %.17g %.17g", kind_name(curve->order), curve->name,
+                 curve->nodes, curve->low, curve->width));
+    }
+    return STATUS_OK;
+}
+
+enum { BLOCK_NAME = 32 };
+
+/// Columns of a table.
+struct columns {
+    struct data_column column[2 * FORCES_BLOCKS + 1];
+    char name[2 * FORCES_BLOCKS][BLOCK_NAME];
+    size_t count;
+};
+
+/// Columns "what_1", …: numbers of blocks.
+static void add_blocks(struct columns *columns, const char *what, size_t blocks,
+                       const double *numbers, size_t rows) {
+    for (size_t b = 0; b < blocks; b++) {
+        char *const name = columns->name[columns->count - 1];
+        snprintf(name, BLOCK_NAME, "%s_%zu", what, b + 1);
+        columns->column[columns->count++] = (struct data_column){name, numbers + b * rows, "%.15g"};
+    }
+}
+
+static enum status write_products(const struct force_equations *equations, const char *file,
+                                  const char *comment, const double *q) {
+    const size_t blocks = force_equations_blocks(equations);
+    struct columns columns = {.column = {{"q[nm or rad]", q, NULL}}, .count = 1};
+    add_blocks(&columns, "block", blocks, equations->product, equations->size);
+    add_blocks(&columns, "virial", blocks, equations->virial, equations->size);
+    return mf_data_table_write(file, comment, columns.column, columns.count, equations->size);
+}
+
+static enum status write_gram(const struct force_equations *equations, const char *file) {
+    const size_t rows = force_equations_entries(equations);
+    struct columns columns = {.count = 1}; // none stands before those of blocks
+    add_blocks(&columns, "block", force_equations_blocks(equations), equations->gram, rows);
+    return mf_data_table_write(file,
+                               "G of the same unknowns: rows (1, 1), (2, 1), (2, 2), (3, 1), …",
+                               columns.column + 1, columns.count - 1, rows);
+}
+
+enum status mf_force_equations_write(const struct force_equations *equations, const char *file,
+                                     const char *gram_file) {
+    enum status status = STATUS_OK;
+    struct bytes text = {0};
+    double *q = NULL;
+    NEW_ARRAY(q, equations->size);
+    for (size_t n = 0; n < equations->curves; n++)
+        for (size_t k = 0; k < equations->curve[n].nodes; k++)
+            q[equations->curve[n].first + k] =
+                equations->curve[n].low + (double)k * equations->curve[n].width;
+    CHECK(describe(equations, &text));
+    CHECK(write_products(equations, file, (const char *)text.data, q));
+    CHECK(write_gram(equations, gram_file));
+done:
+    mf_memory_free(q);
+    mf_source_free(&text);
+    return status;
+}
+
+// Reading -----------------------------------------------------------------------------------------
+
+static int find_order(const char *kind) {
+    for (int order = FORCES_OF_PAIRS; order < BONDED_KINDS; order++)
+        if (strcmp(kind, kind_name(order)) == 0)
+            return order;
+    return BONDED_KINDS;
+}
+
+/// A line of the comments as "curve pairs A-B 13 0.1 0.01"; false if it is another.
+static bool read_curve(const char *line, struct force_curve *curve) {
+    char kind[FORCES_NAME_SIZE];
+    *curve = (struct force_curve){0};
+    if (sscanf(line, "# curve %63s %63s %zu %lf %lf", kind, curve->name, &curve->nodes, &curve->low,
+               &curve->width) != 5)
+        return false;
+    curve->order = find_order(kind);
+    return curve->order < BONDED_KINDS && curve->nodes >= 2 && curve->nodes <= FORCES_MAX_NODES &&
+           curve->width > 0 && isfinite(curve->low) && isfinite(curve->width);
+}
+
+static enum status fail(const char *file, const char *what) {
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: %s: it is to be a table that \"mesofit measure --forces\" has "
+                          "written",
+                          file, what);
+}
+
+/// What the comments say.
+static enum status read_heading(struct force_equations *equations, const struct data_table *table,
+                                const char *file) {
+    struct force_curve curve[FORCES_MAX_CURVES];
+    size_t curves = 0, frames = 0, each = 0, nodes = 0;
+    double beads = 0, square = 0;
+    for (const char *line = table->comments; line; line = strchr(line, '\n')) {
+        line += *line == '\n';
+        if (sscanf(line, "# frames %zu %zu beads %lf square %lf", &frames, &each, &beads,
+                   &square) == 4)
+            continue;
+        if (curves < FORCES_MAX_CURVES && read_curve(line, &curve[curves]))
+            nodes += curve[curves++].nodes;
+    }
+    const size_t blocks = each ? (frames + each - 1) / each : 0;
+    if (curves == 0 || nodes > FORCES_MAX_NODES || nodes != table->rows || blocks == 0 ||
+        blocks > FORCES_BLOCKS || 2 * blocks + 1 != table->columns || !(square > 0))
+        return fail(file, "its heading does not fit its rows and columns");
+    TRY(mf_force_equations_init(equations, curve, curves));
+    equations->frames = frames;
+    equations->each = each;
+    equations->beads = beads;
+    equations->square = square;
+    return STATUS_OK;
+}
+
+/// So many columns from `first` on, shape [blocks, rows].
+static void take(const struct data_table *table, size_t first, size_t blocks, double *numbers) {
+    for (size_t row = 0; row < table->rows; row++)
+        for (size_t b = 0; b < blocks; b++)
+            numbers[b * table->rows + row] = table->values[row * table->columns + first + b];
+}
+
+enum status mf_force_equations_read(struct force_equations *equations, const char *file,
+                                    const char *gram_file) {
+    CLEARED_BY(mf_data_table_clear) struct data_table table = {0}, gram = {0};
+    TRY(mf_data_table_read(&table, file, 2));
+    TRY(read_heading(equations, &table, file));
+    const size_t blocks = force_equations_blocks(equations);
+    take(&table, 1, blocks, equations->product);
+    take(&table, 1 + blocks, blocks, equations->virial);
+    TRY(mf_data_table_read(&gram, gram_file, 1));
+    if (gram.rows != force_equations_entries(equations) || gram.columns != blocks)
+        return fail(gram_file, "its rows and columns are not those of the other file");
+    take(&gram, 0, blocks, equations->gram);
+    return STATUS_OK;
 }

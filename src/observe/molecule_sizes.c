@@ -30,14 +30,13 @@ struct settings {
 
 struct state {
     const struct molecules *molecules;
+    /// Of R(t)·R(0) of each kind [λ²], and of how many there are: shape [kinds + 1, lags + 1].
     struct sample_blocks blocks;
     size_t lags, every;
     double begin, time_step;     ///< step of the first sample, Δt or 1 sweep
     const char *clock;           ///< what tables call it
     struct sample_series series; ///< NUMBERS of each kind
-    double *ends;     ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
-    double *products; ///< shape [blocks, kinds, lags + 1]: sums of R(t)·R(0) [λ²]
-    double *origins;  ///< shape [blocks, lags + 1]: samples in them
+    double *ends; ///< shape [lags + 1, molecules, 3]: the last end-to-end vectors [λ]
     /// Shape [kinds, MAX_PARTS, NUMBERS + lags + 1]: sums of the numbers and of the products over
     /// samples and every so manieth molecule of a kind.
     double *of_part;
@@ -89,10 +88,8 @@ static enum status begin(void *state, const void *settings,
                         .time_step = configuration->sweeps ? 1 : configuration->time_step,
                         .clock = configuration->sweeps ? "sweeps[1]" : "time[tau]",
                         .series.columns = NUMBERS * kinds};
-    TRY(mf_sample_blocks_init(&s->blocks, planned));
+    TRY(mf_sample_blocks_init(&s->blocks, planned, (kinds + 1) * (s->lags + 1)));
     TRY_ARRAY(s->ends, 3 * (s->lags + 1) * (size_t)topology->molecules);
-    TRY_ARRAY(s->products, s->blocks.count * kinds * (s->lags + 1));
-    TRY_ARRAY(s->origins, s->blocks.count * (s->lags + 1));
     TRY_ARRAY(s->of_part, kinds * MAX_PARTS * (NUMBERS + s->lags + 1));
     return mf_whole_molecules_init(&s->whole, topology);
 }
@@ -101,8 +98,6 @@ static void clear(void *state) {
     struct state *s = state;
     mf_sample_series_clear(&s->series);
     mf_memory_free(s->ends);
-    mf_memory_free(s->products);
-    mf_memory_free(s->origins);
     mf_memory_free(s->of_part);
     mf_whole_molecules_clear(&s->whole);
     mf_sample_blocks_clear(&s->blocks);
@@ -124,19 +119,8 @@ static double *part_of(const struct state *s, int k, size_t molecule) {
     return s->of_part + part * (NUMBERS + s->lags + 1);
 }
 
-/// The block of the next sample.
-static size_t begin_sample(struct state *s) {
-    const size_t row = s->lags + 1;
-    if (mf_sample_blocks_are_full(&s->blocks)) {
-        mf_sample_blocks_join(&s->blocks, s->products, (size_t)s->molecules->topology.kinds * row);
-        mf_sample_blocks_join(&s->blocks, s->origins, row);
-        mf_sample_blocks_double(&s->blocks);
-    }
-    return mf_sample_blocks_take(&s->blocks);
-}
-
 /// Products of a sample's end-to-end vectors with those of the samples before.
-static void correlate(struct state *s, size_t sample, size_t block) {
+static void correlate(struct state *s, size_t sample, double *sums) {
     const struct topology *topology = &s->molecules->topology;
     const size_t row = s->lags + 1;
     const double *now = vectors_of(s, sample);
@@ -155,10 +139,9 @@ static void correlate(struct state *s, size_t sample, size_t block) {
                 }
                 part_of(s, k, m)[NUMBERS + lag] += own;
             }
-            s->products[(block * (size_t)topology->kinds + (size_t)k) * row + lag] +=
-                sum / (double)kind->count;
+            sums[(size_t)k * row + lag] += sum / (double)kind->count;
         }
-        s->origins[block * row + lag] += 1;
+        sums[(size_t)topology->kinds * row + lag] += 1;
     }
 }
 
@@ -168,7 +151,7 @@ static enum status sample(void *state, const struct configuration *configuration
     const struct topology *topology = &s->molecules->topology;
     const size_t number = s->blocks.taken;
     double *vectors = vectors_of(s, number), numbers[NUMBERS * TOPOLOGY_MAX_KINDS];
-    const size_t block = begin_sample(s);
+    double *const sums = mf_sample_blocks_next(&s->blocks);
     for (int k = 0; k < topology->kinds; k++) {
         const struct topology_kind *kind = &topology->kind[k];
         double gyration = 0, end = 0;
@@ -188,7 +171,7 @@ static enum status sample(void *state, const struct configuration *configuration
         numbers[NUMBERS * k + GYRATION] = gyration / (double)kind->count;
         numbers[NUMBERS * k + END] = end / (double)kind->count;
     }
-    correlate(s, number, block);
+    correlate(s, number, sums);
     return mf_sample_series_add(&s->series, numbers);
 }
 
@@ -196,11 +179,8 @@ static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
     const size_t vectors = 3 * row * (size_t)s->molecules->topology.molecules;
-    const size_t blocks = s->blocks.count;
     size_t n = mf_sample_series_spans(&s->series, spans);
     spans[n++] = (struct memory_span){s->ends, vectors * sizeof *s->ends};
-    spans[n++] = (struct memory_span){s->products, blocks * kinds * row * sizeof *s->products};
-    spans[n++] = (struct memory_span){s->origins, blocks * row * sizeof *s->origins};
     spans[n++] =
         (struct memory_span){s->of_part, kinds * MAX_PARTS * (NUMBERS + row) * sizeof *s->of_part};
     return n + mf_sample_blocks_spans(&s->blocks, spans + n);
@@ -260,10 +240,10 @@ static size_t find_products(const struct state *s, int k, size_t lag, double *pr
     const size_t kinds = (size_t)s->molecules->topology.kinds, row = s->lags + 1;
     size_t blocks = 0;
     for (size_t block = 0; block < mf_sample_blocks_whole(&s->blocks); block++) {
-        const double *own = s->products + (block * kinds + (size_t)k) * row;
-        const double origins = s->origins[block * row + lag];
+        const double *const sums = s->blocks.sums + block * s->blocks.row;
+        const double origins = sums[kinds * row + lag];
         if (origins > 0)
-            products[blocks++] = own[lag] / origins;
+            products[blocks++] = sums[(size_t)k * row + lag] / origins;
     }
     return blocks;
 }
@@ -281,8 +261,9 @@ static enum status find_correlation(const struct state *s, int k, double *values
     for (size_t lag = 0; lag < row; lag++) {
         double sum = 0, origins = 0;
         for (size_t block = 0; block < s->blocks.count; block++) {
-            sum += s->products[(block * kinds + (size_t)k) * row + lag];
-            origins += s->origins[block * row + lag];
+            const double *const sums = s->blocks.sums + block * s->blocks.row;
+            sum += sums[(size_t)k * row + lag];
+            origins += sums[kinds * row + lag];
         }
         const double mean = origins > 0 ? sum / origins : NAN;
         square = lag == 0 ? mean : square;

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "base/statistics.h"
+#include "observe/sample_blocks.h"
 #include "system/orientation.h"
 
 #include <math.h>
@@ -226,15 +227,9 @@ static void correlate(struct motion *motion, size_t origin, int threads) {
 
 /// Make of every two blocks one, of twice the origins.
 static void join_blocks(struct motion *motion) {
-    const size_t curve = (size_t)motion->plan.lags + 1, half = motion->blocks / 2;
-    double *const sums[] = {motion->squares, motion->products};
-    for (int n = 0; n < 2; n++) {
-        for (size_t b = 0; b < half; b++)
-            for (size_t lag = 0; lag < curve; lag++)
-                sums[n][b * curve + lag] =
-                    sums[n][2 * b * curve + lag] + sums[n][(2 * b + 1) * curve + lag];
-        memset(sums[n] + half * curve, 0, half * curve * sizeof *sums[n]);
-    }
+    const size_t curve = (size_t)motion->plan.lags + 1;
+    mf_sample_blocks_join(motion->squares, motion->blocks, curve);
+    mf_sample_blocks_join(motion->products, motion->blocks, curve);
     motion->each *= 2;
 }
 

@@ -87,7 +87,6 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
 void mf_motion_add(struct motion *motion, const double *state, int threads);
 
 /// What goes with a checkpoint.
-enum { MOTION_SPANS = 4 + MAXWELL_SPANS };
 size_t mf_motion_spans(struct motion *motion, struct memory_span *spans);
 
 /// Arrays of lags + 1 numbers, from time 0 on in steps of plan.every · time_step.

@@ -5,7 +5,7 @@
 #include "observe/flow_field.h"
 #include "observe/density_profile.h"
 #include "observe/flow_profile.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 #include "observe/shear_viscosity.h"
 #include "observe/structure_factor.h"

@@ -6,9 +6,6 @@
 
 #include <math.h>
 
-/// Blocks for the standard error: 20 give the error to about 16 %.
-enum { BLOCKS = 20 };
-
 double mf_rdf_bins_edge(const struct rdf_bins *bins, size_t k) {
     return bins->low + bins->width * (double)k;
 }
@@ -82,14 +79,9 @@ static void count(struct counting *counting, const struct particles *particles,
         mf_neighbours_visit_distances(neighbours, particles, range, count_batch, counting);
 }
 
-void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
-                        const struct neighbours *neighbours, double *histogram) {
-    count(&(struct counting){bins, NULL, histogram, 1, NULL}, particles, neighbours);
-}
-
-void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
-                           const struct particles *particles, const struct neighbours *neighbours,
-                           double *histogram) {
+void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct composition *composition,
+                        const struct particles *particles, const struct neighbours *neighbours,
+                        double *histogram) {
     count(&(struct counting){bins, composition, histogram, 1, NULL}, particles, neighbours);
 }
 
@@ -102,21 +94,13 @@ enum status mf_rdf_init(struct rdf *rdf, const struct rdf_bins *bins, const stru
 /// Room for `planned` samples, 0: as many as there will be.
 static enum status begin(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                          const struct composition *composition, size_t planned) {
-    const bool endless = planned == 0;
     *rdf = (struct rdf){.bins = *bins,
                         .box = *box,
                         .particle_count = (size_t)mf_composition_particles(composition),
                         .composition = *composition,
                         .pairs = (size_t)mf_composition_pairs(composition),
-                        .planned = endless ? SIZE_MAX : planned,
-                        .weight = 1,
-                        .blocks = endless            ? 2 * (size_t)BLOCKS
-                                  : planned < BLOCKS ? planned
-                                                     : BLOCKS,
-                        .each = endless};
-    TRY_ARRAY(rdf->histogram, rdf->blocks * rdf->pairs * bins->count);
-    TRY_ARRAY(rdf->block_samples, rdf->blocks);
-    return STATUS_OK;
+                        .weight = 1};
+    return mf_sample_blocks_init(&rdf->blocks, planned, rdf->pairs * bins->count);
 }
 
 /// The range is beyond that of the simulation's list.
@@ -160,8 +144,7 @@ enum status mf_rdf_init_endless(struct rdf *rdf, const struct rdf_bins *bins, co
 }
 
 void mf_rdf_clear(struct rdf *rdf) {
-    mf_memory_free(rdf->histogram);
-    mf_memory_free(rdf->block_samples);
+    mf_sample_blocks_clear(&rdf->blocks);
     mf_memory_free(rdf->counted.counts);
     mf_particles_clear(&rdf->own_particles);
     mf_neighbours_clear(&rdf->manifest);
@@ -194,38 +177,6 @@ static enum status make_own_list(struct rdf *rdf, const struct particles *partic
     return mf_neighbours_sort_and_build(&rdf->manifest, &rdf->own_particles);
 }
 
-/// Make of every two blocks one, of twice the samples.
-static void join_blocks(struct rdf *rdf) {
-    const size_t all = all_bins(rdf), half = rdf->blocks / 2;
-    for (size_t b = 0; b < half; b++) {
-        const double *two = rdf->histogram + 2 * b * all;
-        for (size_t k = 0; k < all; k++)
-            rdf->histogram[b * all + k] = two[k] + two[all + k];
-        rdf->block_samples[b] = rdf->block_samples[2 * b] + rdf->block_samples[2 * b + 1];
-    }
-    memset(rdf->histogram + half * all, 0, half * all * sizeof *rdf->histogram);
-    memset(rdf->block_samples + half, 0, half * sizeof *rdf->block_samples);
-    rdf->each *= 2;
-}
-
-static size_t find_block(struct rdf *rdf) {
-    if (rdf->each == 0) {
-        const size_t block = rdf->samples * rdf->blocks / rdf->planned;
-        return block < rdf->blocks ? block : rdf->blocks - 1;
-    }
-    if (rdf->samples == rdf->blocks * rdf->each)
-        join_blocks(rdf);
-    return rdf->samples / rdf->each;
-}
-
-/// The histogram of the next sample's block.
-static double *next_block(struct rdf *rdf) {
-    const size_t block = find_block(rdf);
-    rdf->block_samples[block] += 1;
-    rdf->samples++;
-    return rdf->histogram + block * all_bins(rdf);
-}
-
 void mf_rdf_set_volume(struct rdf *rdf, double volume) {
     rdf->weight = volume / mf_box_volume(&rdf->box);
 }
@@ -239,7 +190,7 @@ const struct pair_histogram *mf_rdf_histogram(struct rdf *rdf) {
 }
 
 void mf_rdf_sample_counted(struct rdf *rdf) {
-    double *histogram = next_block(rdf);
+    double *histogram = mf_sample_blocks_next(&rdf->blocks);
     for (size_t part = 0; part < NEIGHBOURS_MAX_PARTS; part++)
         for (size_t k = 0; k < all_bins(rdf); k++)
             histogram[k] +=
@@ -248,7 +199,7 @@ void mf_rdf_sample_counted(struct rdf *rdf) {
 
 enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
                           const struct neighbours *neighbours) {
-    double *histogram = next_block(rdf);
+    double *histogram = mf_sample_blocks_next(&rdf->blocks);
     if (rdf->needs_own_list) {
         TRY(make_own_list(rdf, particles));
         particles = &rdf->own_particles;
@@ -265,20 +216,12 @@ void mf_rdf_add(struct rdf *rdf, const struct configuration *configuration) {
     const uint64_t *const pairs = rdf->intermolecular ? counts->apart : counts->all;
     const double volume = configuration->box.volume / mf_box_volume(&rdf->box);
     const size_t bins = rdf->bins.count;
-    double *histogram = next_block(rdf);
+    double *histogram = mf_sample_blocks_next(&rdf->blocks);
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
         const double weight = volume / counts->share[pair];
         for (size_t k = 0; k < bins; k++)
             histogram[pair * bins + k] += weight * (double)pairs[pair * counts->stride + k];
     }
-}
-
-size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans) {
-    spans[0] = (struct memory_span){&rdf->samples, sizeof rdf->samples};
-    spans[1] =
-        (struct memory_span){rdf->histogram, rdf->blocks * all_bins(rdf) * sizeof *rdf->histogram};
-    spans[2] = (struct memory_span){rdf->block_samples, rdf->blocks * sizeof *rdf->block_samples};
-    return RDF_SPANS;
 }
 
 /// Expected pairs in place k of an array over kinds and bins.
@@ -287,14 +230,13 @@ static double ideal_at(const struct rdf *rdf, size_t k) {
                                  (int)(k / rdf->bins.count));
 }
 
-/// Blocks with samples, and all of them if their number was not planned, of the replica that has
-/// fewest.
-static size_t filled_blocks(const struct rdf *replicas, size_t count) {
-    size_t min = replicas->blocks;
-    for (size_t r = 0; r < count; r++)
-        for (size_t b = 0; b < min; b++)
-            if (replicas[r].block_samples[b] < fmax(1, (double)replicas[r].each))
-                min = b;
+/// Whole blocks of the replica that has fewest.
+static size_t whole_blocks(const struct rdf *replicas, size_t count) {
+    size_t min = SIZE_MAX;
+    for (size_t r = 0; r < count; r++) {
+        const size_t whole = mf_sample_blocks_whole(&replicas[r].blocks);
+        min = whole < min ? whole : min;
+    }
     return min;
 }
 
@@ -308,13 +250,13 @@ static enum status find_series(const struct rdf *replicas, size_t count, size_t 
         for (size_t r = 0; r < count; r++)
             for (size_t b = 0; b < blocks && ideal > 0; b++)
                 (*series)[(k * count + r) * blocks + b] =
-                    replicas[r].histogram[b * all + k] / replicas[r].block_samples[b] / ideal;
+                    replicas[r].blocks.sums[b * all + k] / replicas[r].blocks.samples[b] / ideal;
     }
     return STATUS_OK;
 }
 
 static enum status find_errors(const struct rdf *replicas, size_t count, double *error) {
-    const size_t bins = replicas->bins.count, blocks = filled_blocks(replicas, count);
+    const size_t bins = replicas->bins.count, blocks = whole_blocks(replicas, count);
     const size_t values = count * blocks;
     OWNED double *series = NULL;
     TRY(find_series(replicas, count, blocks, &series));
@@ -329,9 +271,9 @@ enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, d
     for (size_t k = 0; k < all; k++) {
         double pairs = 0, samples = 0;
         for (size_t r = 0; r < count; r++)
-            for (size_t b = 0; b < replicas[r].blocks; b++) {
-                pairs += replicas[r].histogram[b * all + k];
-                samples += replicas[r].block_samples[b];
+            for (size_t b = 0; b < replicas[r].blocks.count; b++) {
+                pairs += replicas[r].blocks.sums[b * all + k];
+                samples += replicas[r].blocks.samples[b];
             }
         g[k] = samples > 0 ? pairs / samples / ideal_at(replicas, k) : 0;
     }
@@ -340,7 +282,7 @@ enum status mf_rdf_result(const struct rdf *replicas, size_t count, double *g, d
 
 enum status mf_rdf_independence(const struct rdf *replicas, size_t count, size_t first, size_t bins,
                                 struct statistics_independence *found) {
-    const size_t blocks = filled_blocks(replicas, count);
+    const size_t blocks = whole_blocks(replicas, count);
     OWNED double *series = NULL;
     TRY(find_series(replicas, count, blocks, &series));
     return mf_statistics_independence(series + first * count * blocks, blocks, count, bins, found);
@@ -363,16 +305,16 @@ static double jackknife(const struct rdf *replicas, size_t count, const double *
     struct running_mean rms = {0};
     double samples = 0;
     for (size_t r = 0; r < count; r++)
-        samples += (double)replicas[r].samples;
+        samples += (double)replicas[r].blocks.taken;
     for (size_t r = 0; r < count; r++)
-        for (size_t b = 0; b < replicas[r].blocks; b++) {
-            const double here = replicas[r].block_samples[b];
+        for (size_t b = 0; b < replicas[r].blocks.count; b++) {
+            const double here = replicas[r].blocks.samples[b];
             if (here == 0 || samples == here)
                 continue;
             for (size_t k = 0; k < all; k++)
-                without[k] =
-                    (g[k] * samples - replicas[r].histogram[b * all + k] / ideal_at(replicas, k)) /
-                    (samples - here);
+                without[k] = (g[k] * samples -
+                              replicas[r].blocks.sums[b * all + k] / ideal_at(replicas, k)) /
+                             (samples - here);
             mf_statistics_add(&rms, mf_rdf_rmse(without, target, all));
         }
     return rms.count < 2 ? 0 : sqrt(rms.squares * (rms.count - 1) / rms.count);
@@ -381,7 +323,7 @@ static double jackknife(const struct rdf *replicas, size_t count, const double *
 enum status mf_rdf_distance(const struct rdf *replicas, size_t count, const double *target,
                             double *rmse, double *error) {
     enum status status = STATUS_OK;
-    const size_t all = all_bins(replicas), blocks = filled_blocks(replicas, count);
+    const size_t all = all_bins(replicas), blocks = whole_blocks(replicas, count);
     const double values = (double)(count * blocks);
     double *g = NULL, *without = NULL, *series = NULL;
     NEW_ARRAY(g, all);

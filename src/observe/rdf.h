@@ -13,6 +13,7 @@
 #include "base/statistics.h"
 #include "forces/pair.h"
 #include "observe/configuration.h"
+#include "observe/sample_blocks.h"
 
 #include <stddef.h>
 
@@ -34,28 +35,20 @@ double mf_rdf_ideal_pairs(const struct rdf_bins *bins, size_t k, const struct bo
 double mf_rdf_ideal_pairs_of(const struct rdf_bins *bins, size_t k, const struct box *box,
                              const struct composition *composition, int pair);
 
-/// Add the pairs of one configuration to `histogram`, shape [bins], uncleared, whatever their
-/// types. The list must be a half list complete for the range of the bins.
-void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct particles *particles,
-                        const struct neighbours *neighbours, double *histogram);
-
-/// The same by pair types: shape [pairs, bins].
-void mf_rdf_count_pairs_of(const struct rdf_bins *bins, const struct composition *composition,
-                           const struct particles *particles, const struct neighbours *neighbours,
-                           double *histogram);
+/// Add the pairs of one configuration to `histogram`, shape [pairs, bins], uncleared. The list must
+/// be a half list complete for the range of the bins.
+void mf_rdf_count_pairs(const struct rdf_bins *bins, const struct composition *composition,
+                        const struct particles *particles, const struct neighbours *neighbours,
+                        double *histogram);
 
 /// Accumulates configurations into consecutive blocks.
 struct rdf {
     struct rdf_bins bins;
     struct box box;
     size_t particle_count;
-    struct composition composition; ///< of what is distinguished
-    size_t pairs;                   ///< pair types
-    size_t planned, samples;
-    size_t blocks;
-    size_t each;                           ///< samples of a block if nothing is planned, else 0
-    double *histogram;                     ///< shape [blocks, pairs, bins.count]
-    double *block_samples;                 ///< shape [blocks]
+    struct composition composition;        ///< of what is distinguished
+    size_t pairs;                          ///< pair types
+    struct sample_blocks blocks;           ///< of histograms, shape [pairs, bins.count]
     double weight;                         ///< of the pairs of the next sample: V/V_box
     bool needs_own_list;                   ///< the range exceeds that of the simulation's list
     const struct topology *intermolecular; ///< count pairs of different molecules alone; NULL: all
@@ -75,8 +68,7 @@ enum status mf_rdf_init_mixture(struct rdf *rdf, const struct rdf_bins *bins, co
                                 const struct composition *composition, double list_cutoff,
                                 size_t planned) MUST_USE;
 
-/// The same for as many configurations as there will be, whose source counts pairs: in blocks of
-/// equal size, which are joined two by two when there are 40.
+/// The same for as many configurations as there will be, whose source counts pairs.
 enum status mf_rdf_init_endless(struct rdf *rdf, const struct rdf_bins *bins, const struct box *box,
                                 const struct composition *composition) MUST_USE;
 void mf_rdf_clear(struct rdf *rdf);
@@ -98,10 +90,6 @@ void mf_rdf_sample_counted(struct rdf *rdf);
 /// Add the present configuration. Fails: NO_MEMORY.
 enum status mf_rdf_sample(struct rdf *rdf, const struct particles *particles,
                           const struct neighbours *neighbours) MUST_USE;
-
-/// What goes with a checkpoint.
-enum { RDF_SPANS = 3 };
-size_t mf_rdf_spans(struct rdf *rdf, struct memory_span *spans);
 
 /// g and its standard error over the blocks of all replicas, whose correlation the bins of a kind
 /// of pairs tell together but for slower ones (mf_statistics_correlated_errors): of close samples

@@ -120,7 +120,7 @@ static void clear(void *state) {
 
 static const struct pair_histogram *histogram(void *state) {
     struct rdf_observed *observed = state;
-    return observed->counted.planned > 0 ? mf_rdf_histogram(&observed->counted) : NULL;
+    return observed->counted.pairs > 0 ? mf_rdf_histogram(&observed->counted) : NULL;
 }
 
 static enum status sample_force(struct rdf_observed *observed, struct simulation *simulation) {
@@ -144,9 +144,9 @@ static enum status sample(void *state, const struct configuration *configuration
         mf_rdf_add(&observed->counted, configuration);
         return STATUS_OK;
     }
-    if (observed->counted.planned > 0)
+    if (observed->counted.pairs > 0)
         mf_rdf_set_volume(&observed->counted, mf_box_volume(&simulation->particles.box));
-    if (observed->counted.planned > 0)
+    if (observed->counted.pairs > 0)
         TRY(mf_rdf_sample(&observed->counted, &simulation->particles, &simulation->neighbours));
     return sample_force(observed, simulation);
 }
@@ -154,8 +154,8 @@ static enum status sample(void *state, const struct configuration *configuration
 static size_t spans(void *state, struct memory_span *spans) {
     struct rdf_observed *observed = state;
     size_t n = 0;
-    if (observed->counted.planned > 0)
-        n = mf_rdf_spans(&observed->counted, spans);
+    if (observed->counted.pairs > 0)
+        n = mf_sample_blocks_spans(&observed->counted.blocks, spans);
     if (observed->force.planned > 0)
         n += mf_rdf_force_spans(&observed->force, spans + n);
     return n;
@@ -215,9 +215,9 @@ static enum status write(const void *state, const struct observable_results *res
 static bool were_within(const struct rdf *rdf, size_t pair, double distance) {
     const size_t bins = rdf->bins.count;
     bool were = false;
-    for (size_t row = pair; row < rdf->blocks * rdf->pairs; row += rdf->pairs)
+    for (size_t row = pair; row < rdf->blocks.count * rdf->pairs; row += rdf->pairs)
         for (size_t k = 0; k < bins && mf_rdf_bins_centre(&rdf->bins, k) < distance; k++)
-            were = were || rdf->histogram[row * bins + k] > 0;
+            were = were || rdf->blocks.sums[row * bins + k] > 0;
     return were;
 }
 

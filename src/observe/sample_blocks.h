@@ -12,25 +12,31 @@ struct sample_blocks {
     size_t taken;    ///< so far
     size_t count;    ///< of blocks
     size_t each;     ///< samples of a block if nothing is planned, else 0
+    size_t row;      ///< numbers of a sample
     double *samples; ///< shape [count]
+    double *sums;    ///< shape [count, row]: over the samples of a block
 };
 
 /// Fails: NO_MEMORY. Tested: test_sample_blocks.
-enum status mf_sample_blocks_init(struct sample_blocks *blocks, size_t planned) MUST_USE;
+enum status mf_sample_blocks_init(struct sample_blocks *blocks, size_t planned,
+                                  size_t row) MUST_USE;
 void mf_sample_blocks_clear(struct sample_blocks *blocks);
 
-/// Whether the next sample has no block: sums of shape [count, row] are then to be joined, each by
-/// mf_sample_blocks_join, and at last the blocks, by mf_sample_blocks_double.
-bool mf_sample_blocks_are_full(const struct sample_blocks *blocks);
-void mf_sample_blocks_join(const struct sample_blocks *blocks, double *sums, size_t row);
-void mf_sample_blocks_double(struct sample_blocks *blocks);
+/// Take a sample; returns the sums of its block, to which it is to be added, shape [row]. What is
+/// beyond those planned belongs to the last.
+double *mf_sample_blocks_next(struct sample_blocks *blocks);
 
-/// Take a sample; returns its block.
-size_t mf_sample_blocks_take(struct sample_blocks *blocks);
+/// Make of every two of `count` blocks one; the second half is then empty.
+/// @param[in,out] sums  shape [count, row]
+void mf_sample_blocks_join(double *sums, size_t count, size_t row);
 
 /// How many blocks, the first ones, have all their samples: errors are of these.
 size_t mf_sample_blocks_whole(const struct sample_blocks *blocks);
 
-/// What goes with a checkpoint, if samples are planned: two spans.
-enum { SAMPLE_BLOCKS_SPANS = 2 };
+/// The mean of number k of a sample over the whole blocks, NaN if there are none, and its error.
+/// @param[in] divisor  of the number
+double mf_sample_blocks_mean(const struct sample_blocks *blocks, size_t k, double divisor,
+                             double *error);
+
+/// What goes with a checkpoint, if samples are planned; returns how many spans.
 size_t mf_sample_blocks_spans(struct sample_blocks *blocks, struct memory_span *spans);

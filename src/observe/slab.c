@@ -19,7 +19,7 @@
 #include "base/statistics.h"
 #include "dynamics/simulation_look.h"
 #include "io/data_table.h"
-#include "observe/equilibrium.h"
+#include "observe/equilibration.h"
 #include "observe/measure.h"
 #include "observe/pooled.h"
 #include "observe/sample_blocks.h"
@@ -52,17 +52,14 @@ struct state {
     double count;
     int axis;
     size_t curves; ///< profiles: of all beads, and in a mixture of each type
-    size_t row;    ///< curves times bins
     struct sample_series series;
-    struct sample_blocks blocks;
-    double *sums; ///< shape [blocks, curves, bins]: densities, over the samples of a block [1/λ^d]
+    struct sample_blocks blocks; ///< of densities, shape [curves, bins] [1/λ^d]
 };
 
 static void clear(void *state) {
     struct state *s = state;
     mf_sample_series_clear(&s->series);
     mf_sample_blocks_clear(&s->blocks);
-    mf_memory_free(s->sums);
     *s = (struct state){0};
 }
 
@@ -91,11 +88,8 @@ static enum status begin(void *state, const void *settings,
                         .axis = mf_placement_slab_axis(&simulation->particles.box),
                         .curves = 1 + (mixed ? (size_t)composition->types : 0),
                         .series.columns = SERIES};
-    s->row = s->curves * s->bins;
     TRY(check_stress(simulation));
-    TRY(mf_sample_blocks_init(&s->blocks, (size_t)plan->samples));
-    TRY_ARRAY(s->sums, s->blocks.count * s->row);
-    return STATUS_OK;
+    return mf_sample_blocks_init(&s->blocks, (size_t)plan->samples, s->curves * s->bins);
 }
 
 // Sampling ----------------------------------------------------------------------------------------
@@ -112,7 +106,7 @@ static double find_middle(const struct particles *particles, int axis) {
 }
 
 static void add_profile(struct state *s, const struct particles *particles) {
-    double *const sums = s->sums + mf_sample_blocks_take(&s->blocks) * s->row;
+    double *const sums = mf_sample_blocks_next(&s->blocks);
     const double middle = find_middle(particles, s->axis);
     const double one = (double)s->bins / mf_box_volume(&s->box);
     for (size_t k = 0; k < particles->count; k++) {
@@ -143,10 +137,6 @@ static enum status add_stress(struct state *s, const struct simulation *simulati
 static enum status sample(void *state, const struct configuration *configuration) {
     const struct simulation *const simulation = configuration->simulation;
     struct state *s = state;
-    if (mf_sample_blocks_are_full(&s->blocks)) {
-        mf_sample_blocks_join(&s->blocks, s->sums, s->row);
-        mf_sample_blocks_double(&s->blocks);
-    }
     add_profile(s, &simulation->particles);
     return add_stress(s, simulation);
 }
@@ -154,10 +144,8 @@ static enum status sample(void *state, const struct configuration *configuration
 /// Those of the series first, whose lengths depend on the first.
 static size_t spans(void *state, struct memory_span *spans) {
     struct state *s = state;
-    size_t n = mf_sample_series_spans(&s->series, spans);
-    n += mf_sample_blocks_spans(&s->blocks, spans + n);
-    spans[n] = (struct memory_span){s->sums, s->blocks.count * s->row * sizeof *s->sums};
-    return n + 1;
+    const size_t n = mf_sample_series_spans(&s->series, spans);
+    return n + mf_sample_blocks_spans(&s->blocks, spans + n);
 }
 
 static enum status reserve(void *state) {
@@ -182,7 +170,7 @@ static double mean_without(const struct state *s, size_t k, int without) {
     double sum = 0, samples = 0;
     for (size_t b = 0; b < mf_sample_blocks_whole(&s->blocks); b++)
         if ((int)b != without) {
-            sum += s->sums[b * s->row + k];
+            sum += s->blocks.sums[b * s->blocks.row + k];
             samples += s->blocks.samples[b];
         }
     return sum / samples;
@@ -208,11 +196,11 @@ static enum status find(const struct state *s, struct found *found) {
     found->fit = mf_slab_fit(density, s->bins, length, NULL);
     const double volume = mf_box_volume(&s->box);
     found->has_step = mf_slab_fit_is_slab(&found->fit, length, volume, s->count);
-    found->is_slab =
-        found->has_step &&
-        mf_slab_fit_rises_once(&found->fit,
-                               &(struct slab_blocks){s->sums, s->blocks.samples, blocks, s->row},
-                               s->bins, length, volume);
+    found->is_slab = found->has_step &&
+                     mf_slab_fit_rises_once(&found->fit,
+                                            &(struct slab_blocks){s->blocks.sums, s->blocks.samples,
+                                                                  blocks, s->blocks.row},
+                                            s->bins, length, volume);
     numbers_of(&found->fit, found->value);
     for (size_t b = 0; b < blocks && blocks > 1; b++) {
         double without[NUMBERS];
@@ -262,19 +250,9 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     TRY(find(s, &found));
     if (!found.is_slab)
         return warn_no_slab(s, &found);
-    return mf_equilibrium_check("surface tension",
-                                s->box.dimensions == 3 ? tension_unit : line_unit,
-                                sample_series_column(&s->series, TENSION), s->series.count);
-}
-
-/// The mean of the densities of a bin over the whole blocks, and its error.
-static double find_bin(const struct state *s, size_t k, double *error) {
-    double means[MAX_BLOCKS];
-    const size_t whole = mf_sample_blocks_whole(&s->blocks);
-    for (size_t b = 0; b < whole; b++)
-        means[b] = s->sums[b * s->row + k] / s->blocks.samples[b];
-    *error = mf_statistics_correlated_error(means, whole, 1);
-    return mean_without(s, k, -1);
+    return mf_equilibration_check("surface tension",
+                                  s->box.dimensions == 3 ? tension_unit : line_unit,
+                                  sample_series_column(&s->series, TENSION), s->series.count);
 }
 
 /// slab.tsv: places from the middle of the slab, density with its error, the fit, and in a mixture
@@ -289,16 +267,16 @@ static enum status write(const void *state, const struct observable_results *res
     struct found found;
     OWNED double *values = NULL;
     TRY(find(s, &found));
-    TRY_ARRAY(values, 2 * bins + 2 * s->row);
+    TRY_ARRAY(values, 2 * bins + 2 * s->blocks.row);
     double *const z = values, *const fit = z + bins, *const density = fit + bins,
-                  *const error = density + s->row;
+                  *const error = density + s->blocks.row;
     for (size_t k = 0; k < bins; k++) {
         z[k] = s->box.length[s->axis] * (((double)k + 0.5) / (double)bins - 0.5);
         fit[k] = found.is_slab ? mf_slab_fit_value(&found.fit, z[k]) : NAN;
     }
-    for (size_t k = 0; k < s->row; k++)
-        density[k] = find_bin(s, k, &error[k]);
-    mf_statistics_mark_unknown_errors(error, s->row);
+    for (size_t k = 0; k < s->blocks.row; k++)
+        density[k] = mf_sample_blocks_mean(&s->blocks, k, 1, &error[k]);
+    mf_statistics_mark_unknown_errors(error, s->blocks.row);
     columns[0] = (struct data_column){axes[s->axis], z, "%.6g"};
     columns[1] = (struct data_column){"density[1/lambda^d]", density, "%.6g"};
     columns[2] = (struct data_column){"error[1/lambda^d]", error, "%.3g"};

@@ -13,6 +13,7 @@
 #include "observe/observable.h"
 #include "observe/sample_blocks.h"
 #include "observe/sample_series.h"
+#include "system/neighbours.h"
 
 struct weighted_density_settings {
     double inner_cutoff, cutoff; ///< r_0 and r_c [λ]
@@ -51,8 +52,7 @@ enum status mf_weighted_density_independence(const void *const *states, size_t r
 struct weighted_density {
     struct weighted_density_settings settings; ///< with the maximum that was chosen
     struct sample_series series; ///< of each sample: the means of ρ and ρ², the share beyond
-    struct sample_blocks blocks;
-    double *sums; ///< shape [blocks, bins]: share of the particles, over the samples of a block
+    struct sample_blocks blocks; ///< of the share of the particles in each bin
 };
 
 /// Prepare for `planned` samples, 0: as many as there will be, of `count` particles in a box, whose
@@ -85,3 +85,25 @@ enum status mf_weighted_density_write(const struct weighted_density *density,
 /// The numbers of a summary.
 void mf_weighted_density_write_summary(const struct weighted_density *density,
                                        struct json_writer *writer);
+
+/// The weighted density around each particle of a configuration, by a list of its own that is as
+/// long as the weight is.
+struct density_list {
+    struct weighted_density_settings settings;
+    struct particles particles; ///< a sorted copy
+    struct neighbours neighbours;
+    double *values;   ///< shape [count]: ρ_i = Σ_j w(r_ij), by id
+    double *stresses; ///< shape [count]: Σ_j r w'(r_ij), by id
+};
+
+/// Must be cleared, also after a failure. Fails: BAD_INPUT if the weight is too long for the box;
+/// NO_MEMORY.
+enum status mf_weighted_density_list_init(struct density_list *list,
+                                          const struct weighted_density_settings *settings,
+                                          const struct box *box, size_t count) MUST_USE;
+
+void mf_weighted_density_list_clear(struct density_list *list);
+
+/// Fill in what a configuration has. Fails: NO_MEMORY. Tested: test_weighted_density (unit, cli).
+enum status mf_weighted_density_list_find(struct density_list *list,
+                                          const struct particles *from) MUST_USE;

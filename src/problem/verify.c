@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/statistics.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/motion.h"
 #include "observe/stationary.h"
 #include "problem/sampling_engine.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/memory.h"
 #include "base/statistics.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 #include "observe/stationary.h"
 #include "observe/thermodynamics.h"
@@ -78,7 +78,7 @@ done:
 /// Blocks that have samples.
 static size_t sampled_blocks(const struct rdf *rdf) {
     size_t blocks = 0;
-    while (blocks < rdf->blocks && rdf->block_samples[blocks] > 0)
+    while (blocks < rdf->blocks.count && rdf->blocks.samples[blocks] > 0)
         blocks++;
     return blocks;
 }
@@ -89,11 +89,11 @@ static void add_blocks(const struct rdf *rdf, const struct parts *parts, size_t 
     const size_t each = sampled_blocks(rdf) / STATIONARY_PARTS;
     double samples[STATIONARY_PARTS] = {0};
     for (size_t b = 0; b < each * STATIONARY_PARTS; b++)
-        samples[b / each] += rdf->block_samples[b];
+        samples[b / each] += rdf->blocks.samples[b];
     for (size_t b = 0; b < each * STATIONARY_PARTS; b++)
         for (size_t n = 0; n < parts->row && samples[b / each] > 0; n++)
             part_of(parts, replica, b / each)[n] +=
-                rdf->histogram[b * parts->row + n] / samples[b / each];
+                rdf->blocks.sums[b * parts->row + n] / samples[b / each];
 }
 
 /// Bins are weighted by one over their pairs, which is one over their variance where these are few.

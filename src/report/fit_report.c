@@ -3,7 +3,7 @@
 
 #include "base/number_text.h"
 #include "curves/expression_text.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "problem/parametrisation.h"
 #include "report/fit_closing.h"
 #include "report/fit_verification.h"

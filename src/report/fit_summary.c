@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/version.h"
 #include "observe/kirkwood_buff.h"
-#include "observe/kirkwood_buff_observable.h"
 #include "problem/parametrisation.h"
 #include "report/fit_output.h"
 #include "report/fit_report.h"

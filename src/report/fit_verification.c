@@ -2,7 +2,7 @@
 #include "report/fit_verification.h"
 
 #include "base/number_text.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "problem/group_kind.h"
 
 #include <math.h>

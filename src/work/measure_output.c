@@ -245,8 +245,8 @@ static enum status find_correlation(const struct rdf *rdf, double *correlation) 
     CHECK(mf_rdf_result(rdf, 1, g, error));
     for (size_t n = 0; n < all; n++) {
         double pairs = 0;
-        for (size_t b = 0; b < rdf->blocks; b++)
-            pairs += rdf->histogram[b * all + n];
+        for (size_t b = 0; b < rdf->blocks.count; b++)
+            pairs += rdf->blocks.sums[b * all + n];
         if (!(pairs >= enough) || !isfinite(error[n]))
             continue;
         sum += pairs * pow(error[n] / g[n], 2);

@@ -51,9 +51,11 @@ static void assert_recovered(struct fluid *fluid, const double time_step[2]) {
         mf_force_covariance_result(&covariance, kappa[k], error[k]);
         mf_force_covariance_clear(&covariance);
     }
-    mf_force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
-                                    (const double *const[]){error[0], error[1]}, BINS, squared,
-                                    squared_error);
+    const double first = time_step[1] / (time_step[1] - time_step[0]), second = 1 - first;
+    for (size_t bin = 0; bin < BINS; bin++) { // what grows with the time step goes
+        squared[bin] = first * kappa[0][bin] + second * kappa[1][bin];
+        squared_error[bin] = hypot(first * error[0][bin], second * error[1][bin]);
+    }
     for (size_t bin = 6; bin < 16; bin++) {
         assert_close_relative(squared[bin], exact(bin), max);
         assert_close(squared[bin], exact(bin), 4 * squared_error[bin] + 0.01 * exact(bin));

@@ -4,7 +4,7 @@
 // approximation.
 #include "base/statistics.h"
 #include "curves/formula.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 #include "observe/measure.h"
 #include "observe/pooled.h"
 #include "shared/fluids.h"

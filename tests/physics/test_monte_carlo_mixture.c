@@ -68,8 +68,8 @@ static void measure_dynamics(const struct fluid *fluid, struct comoments *blocks
         for (int n = 0; n < SAMPLES; n++) {
             double sample[PAIRS * BINS] = {0};
             assert_ok(mf_simulation_run(&simulation, 20));
-            mf_rdf_count_pairs_of(&bins, &fluid->setup.composition, &simulation.particles,
-                                  &simulation.neighbours, sample);
+            mf_rdf_count_pairs(&bins, &fluid->setup.composition, &simulation.particles,
+                               &simulation.neighbours, sample);
             for (int k = 0; k + 1 < SIZE; k++)
                 mean[k] += sample[k] / SAMPLES;
             mean[SIZE - 1] += simulation.sums.virial / SAMPLES;

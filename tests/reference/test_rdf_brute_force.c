@@ -77,7 +77,7 @@ static void assert_counts(const struct rdf_bins *bins, const struct particles *p
     assert_ok(mf_rdf_init(&rdf, bins, &particles->box, particles->count, list_cutoff, 1));
     assert_int_equal(rdf.needs_own_list, needs_own_list);
     assert_ok(mf_rdf_sample(&rdf, particles, neighbours));
-    assert_histogram(rdf.histogram, &counts, bins->count, 1);
+    assert_histogram(rdf.blocks.sums, &counts, bins->count, 1);
     mf_rdf_clear(&rdf);
 }
 
@@ -93,7 +93,7 @@ static void assert_passing_counts(const struct rdf_bins *bins, struct simulation
     assert_non_null(law.histogram);
     mf_pair_forces(&law, &simulation->particles, &simulation->neighbours, 1, PAIR_FORCES, NULL);
     mf_rdf_sample_counted(&rdf);
-    assert_histogram(rdf.histogram, &counts, bins->count, 1);
+    assert_histogram(rdf.blocks.sums, &counts, bins->count, 1);
     mf_rdf_clear(&rdf);
 }
 
@@ -116,7 +116,7 @@ static void assert_kinds(const struct rdf_bins *bins, struct simulation *simulat
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         struct counts counts;
         count_kind(bins, composition, pair, particles, &counts);
-        assert_histogram(rdf.histogram + (size_t)pair * bins->count, &counts, bins->count, 1);
+        assert_histogram(rdf.blocks.sums + (size_t)pair * bins->count, &counts, bins->count, 1);
     }
     mf_rdf_clear(&rdf);
 }
@@ -212,7 +212,8 @@ static void test_rdf_counts_every_pair_twice_when_the_list_is_full(void **state)
                                  &fluid.potential, 1, 6));
     assert_ok(mf_metropolis_equilibrate(&metropolis, 51));
     count_all(&bins, &metropolis.particles, &counts);
-    mf_rdf_count_pairs(&bins, &metropolis.particles, &metropolis.neighbours, counted);
+    mf_rdf_count_pairs(&bins, &metropolis.law.composition, &metropolis.particles,
+                       &metropolis.neighbours, counted);
     assert_histogram(counted, &counts, BINS, 2);
     mf_metropolis_clear(&metropolis);
     fluid_clear(&fluid);
@@ -237,7 +238,7 @@ static void test_rdf_counts_the_end_of_the_step_when_forces_are_midway(void **st
     assert_ok(watched_sample(&simulation, &plan, (struct watched){.rdf = &measured}, NULL));
     assert_ok(mf_rdf_sample(&end, &simulation.particles, &simulation.neighbours));
     for (int k = 0; k < BINS; k++)
-        differences += fabs(measured.histogram[k] - end.histogram[k]);
+        differences += fabs(measured.blocks.sums[k] - end.blocks.sums[k]);
     assert_true(differences <= 4); // two pairs on an edge
     mf_rdf_clear(&measured);
     mf_rdf_clear(&end);

@@ -60,9 +60,9 @@ static void run_to_the_end(struct run *run) {
 
 static void assert_same(const struct run *a, const struct run *b) {
     restart_assert_same(&a->simulation, &b->simulation);
-    assert_int_equal(a->rdf.samples, b->rdf.samples);
-    assert_memory_equal(a->rdf.histogram, b->rdf.histogram,
-                        a->rdf.blocks * a->rdf.pairs * BINS * sizeof *a->rdf.histogram);
+    assert_int_equal(a->rdf.blocks.taken, b->rdf.blocks.taken);
+    assert_memory_equal(a->rdf.blocks.sums, b->rdf.blocks.sums,
+                        a->rdf.blocks.count * a->rdf.pairs * BINS * sizeof(double));
     assert_int_equal(a->thermodynamics.series.count, SAMPLES);
     assert_int_equal(b->thermodynamics.series.count, SAMPLES);
     for (int q = 0; q < THERMODYNAMICS_QUANTITIES; q++)

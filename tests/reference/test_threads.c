@@ -44,7 +44,7 @@ static void run(const struct simulation_setup *setup, int threads, struct outcom
             outcome->position[simulation.particles.id[k]][d] = simulation.particles.position[d][k];
             outcome->velocity[simulation.particles.id[k]][d] = simulation.particles.velocity[d][k];
         }
-    memcpy(outcome->histogram, rdf.histogram, rdf.pairs * BINS * sizeof *rdf.histogram);
+    memcpy(outcome->histogram, rdf.blocks.sums, rdf.pairs * BINS * sizeof *rdf.blocks.sums);
     outcome->sums = simulation.sums;
     outcome->list_builds = simulation.list_builds;
     mf_rdf_clear(&rdf);

@@ -72,8 +72,8 @@ static void check_sums(struct metropolis *metropolis) {
     uint32_t counts[MAX_PAIRS * BINS + 1] = {0};
     double histogram[MAX_PAIRS * BINS] = {0}, energy = 0, virial = 0, differences = 0;
     struct pair_sums sums;
-    mf_rdf_count_pairs_of(&bins, composition, &metropolis->particles, &metropolis->neighbours,
-                          histogram);
+    mf_rdf_count_pairs(&bins, composition, &metropolis->particles, &metropolis->neighbours,
+                       histogram);
     for (size_t k = 0; k < COUNT; k++) {
         double at[3] = {0};
         for (int d = 0; d < metropolis->particles.box.dimensions; d++)

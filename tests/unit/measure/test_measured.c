@@ -353,8 +353,8 @@ static void test_measured_bits_are_the_same_when_threads_and_batches_differ(void
         plan.threads = plan.motion.threads = threads;
         measure(film, &plan, (size_t)threads * 4, &other);
         const struct rdf *a = mf_measured_rdf(&one), *b = mf_measured_rdf(&other);
-        assert_memory_equal(a->histogram, b->histogram,
-                            a->blocks * a->pairs * a->bins.count * sizeof *a->histogram);
+        assert_memory_equal(a->blocks.sums, b->blocks.sums,
+                            a->blocks.count * a->blocks.row * sizeof *a->blocks.sums);
         const struct motion *m = &one.motion.motion, *n = &other.motion.motion;
         const size_t curve = m->blocks * ((size_t)m->plan.lags + 1) * sizeof *m->squares;
         assert_memory_equal(m->squares, n->squares, curve);
@@ -424,7 +424,7 @@ static void test_measured_errors_are_those_of_counts_when_frames_are_independent
     measure(film, &plan, 4, &measured);
     assert_ok(mf_rdf_result(mf_measured_rdf(&measured), 1, g, error));
     const struct rdf *rdf = mf_measured_rdf(&measured);
-    assert_int_equal(rdf->each, 32); // 700 frames in 21 blocks and a part
+    assert_int_equal(rdf->blocks.each, 32); // 700 frames in 21 blocks and a part
     for (size_t k = BINS / 3; k < BINS; k++) {
         const double ideal = mf_rdf_ideal_pairs(&rdf->bins, k, &rdf->box, BEADS);
         ratio += error[k] * sqrt(ideal * FRAMES) / (BINS - BINS / 3);

@@ -2,7 +2,7 @@
 //
 // Waves in boxes of any shape, against sums over pairs and what periodic systems have in common.
 #include "base/rng.h"
-#include "trajectory/frame_box.h"
+#include "trajectory/frame.h"
 #include "observe/measure.h"
 #include "observe/structure_factor.h"
 #include "shared/is_close.h"

@@ -2,7 +2,7 @@
 //
 // Series of known correlation: x_t = r x_{t−1} + noise has n (1 − r)/(1 + r) independent values.
 #include "base/rng.h"
-#include "observe/equilibrium.h"
+#include "observe/equilibration.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -29,7 +29,7 @@ static int count_complaints(double independent, double drift) {
         make_series(x, r, n);
         for (int t = 0; t < SAMPLES; t++)
             x[t] += drift * t / SAMPLES;
-        complaints += mf_equilibrium_check("energy", "k_B T_0", x, SAMPLES) != STATUS_OK;
+        complaints += mf_equilibration_check("energy", "k_B T_0", x, SAMPLES) != STATUS_OK;
     }
     return complaints;
 }
@@ -64,7 +64,7 @@ static void test_equilibrium_check_complains_of_a_begin_that_differs(void **stat
         make_series(x, 0, n);
         for (int t = 0; t < SAMPLES; t++)
             x[t] += 15 * exp(-t / (0.1 * SAMPLES));
-        complaints += mf_equilibrium_check("energy", "k_B T_0", x, SAMPLES) != STATUS_OK;
+        complaints += mf_equilibration_check("energy", "k_B T_0", x, SAMPLES) != STATUS_OK;
     }
     assert_in_range(complaints, (95 * SERIES) / 100, SERIES);
 }
@@ -74,7 +74,7 @@ static void test_equilibrium_check_names_what_it_complains_of(void **state) {
     double x[SAMPLES];
     for (int t = 0; t < SAMPLES; t++)
         x[t] = (t < SAMPLES / 2 ? 1 : 2) + 0.01 * (t % 3);
-    assert_fails(mf_equilibrium_check("pressure", "k_B T_0/lambda^d", x, SAMPLES),
+    assert_fails(mf_equilibration_check("pressure", "k_B T_0/lambda^d", x, SAMPLES),
                  STATUS_UNCONVERGED, "the pressure is 1.0099 +- ");
     assert_contains(mf_status_message(), " and 2.01 +- ");
 }
@@ -84,12 +84,12 @@ static void test_equilibrium_check_leaves_constants_and_few_samples_alone(void *
     double x[SAMPLES];
     for (int t = 0; t < SAMPLES; t++)
         x[t] = 5e8 + 1e-3 * t; // as sums of doubles drift
-    assert_ok(mf_equilibrium_check("energy", "k_B T_0", x, SAMPLES));
+    assert_ok(mf_equilibration_check("energy", "k_B T_0", x, SAMPLES));
     for (int t = 0; t < SAMPLES; t++)
         x[t] = t;
-    assert_ok(mf_equilibrium_check("energy", "k_B T_0", x, 19));
-    assert_ok(mf_equilibrium_check("energy", "k_B T_0", x, 0));
-    assert_fails(mf_equilibrium_check("energy", "k_B T_0", x, SAMPLES), STATUS_UNCONVERGED,
+    assert_ok(mf_equilibration_check("energy", "k_B T_0", x, 19));
+    assert_ok(mf_equilibration_check("energy", "k_B T_0", x, 0));
+    assert_fails(mf_equilibration_check("energy", "k_B T_0", x, SAMPLES), STATUS_UNCONVERGED,
                  "energy");
 }
 

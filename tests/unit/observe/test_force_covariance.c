@@ -49,23 +49,6 @@ static void test_force_covariance_equals_a_sum_over_all_pairs(void **state) {
     fluid_clear(&fluid);
 }
 
-/// κ = A + B Δt goes, errors add up.
-static void test_force_covariance_extrapolate_removes_what_grows_with_the_time_step(void **state) {
-    (void)state;
-    const double time_step[2] = {0.02, 0.06}, a[2] = {4, 1}, b[2] = {-30, 7};
-    const double kappa[2][2] = {{a[0] + 0.02 * b[0], a[1] + 0.02 * b[1]},
-                                {a[0] + 0.06 * b[0], a[1] + 0.06 * b[1]}};
-    const double error[2][2] = {{0.2, 0}, {0.1, 0.3}};
-    double squared[2], squared_error[2];
-    mf_force_covariance_extrapolate(time_step, (const double *const[]){kappa[0], kappa[1]},
-                                    (const double *const[]){error[0], error[1]}, 2, squared,
-                                    squared_error);
-    for (int k = 0; k < 2; k++) {
-        assert_close(squared[k], a[k], 1e-14);
-        assert_close(squared_error[k], hypot(1.5 * error[0][k], 0.5 * error[1][k]), 1e-14);
-    }
-}
-
 static void test_force_covariance_init_refuses_where_it_would_mean_nothing(void **state) {
     (void)state;
     struct fluid fluid;
@@ -98,7 +81,6 @@ static void test_force_covariance_init_refuses_where_it_would_mean_nothing(void 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_force_covariance_equals_a_sum_over_all_pairs),
-        cmocka_unit_test(test_force_covariance_extrapolate_removes_what_grows_with_the_time_step),
         cmocka_unit_test(test_force_covariance_init_refuses_where_it_would_mean_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

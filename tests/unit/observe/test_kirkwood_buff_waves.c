@@ -4,7 +4,7 @@
 // beads that always stand so far apart, and molecules at random.
 #include "base/rng.h"
 #include "base/statistics.h"
-#include "observe/kirkwood_buff_waves.h"
+#include "observe/kirkwood_buff.h"
 #include "shared/is_close.h"
 #include "shared/molecules.h"
 #include "shared/testing.h"

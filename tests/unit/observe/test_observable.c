@@ -123,12 +123,12 @@ static void test_two_histograms_of_a_step_are_the_same(void **state) {
     measure(&simulation, (const struct observable_use[]){{&mf_rdf_observable, &first, NULL},
                                                          {&mf_rdf_observable, &second, NULL},
                                                          {NULL, NULL, NULL}});
-    assert_int_equal(first.counted.samples, SAMPLES);
-    assert_int_equal(second.counted.samples, SAMPLES);
+    assert_int_equal(first.counted.blocks.taken, SAMPLES);
+    assert_int_equal(second.counted.blocks.taken, SAMPLES);
     double pairs = 0;
-    for (size_t k = 0; k < first.counted.blocks * 30; k++) {
-        assert_close(first.counted.histogram[k], second.counted.histogram[k], 0);
-        pairs += first.counted.histogram[k];
+    for (size_t k = 0; k < first.counted.blocks.count * 30; k++) {
+        assert_close(first.counted.blocks.sums[k], second.counted.blocks.sums[k], 0);
+        pairs += first.counted.blocks.sums[k];
     }
     assert_true(pairs > SAMPLES * PARTICLES);
     mf_rdf_observable.clear(&first);

@@ -154,7 +154,7 @@ static double scatter(size_t k) {
 static void make_samples(struct rdf *rdf, uint32_t trial, uint32_t replica, double phi) {
     double deviation[BINS] = {0};
     assert_ok(mf_rdf_init(rdf, &few_bins, &cube, MANY, 5, BLOCKS * EACH));
-    assert_int_equal(rdf->blocks, BLOCKS);
+    assert_int_equal(rdf->blocks.count, BLOCKS);
     for (uint32_t sample = 0; sample < BLOCKS * EACH; sample++) {
         double normal[4] = {0};
         for (uint32_t k = 0; k < BINS; k++) {
@@ -163,12 +163,12 @@ static void make_samples(struct rdf *rdf, uint32_t trial, uint32_t replica, doub
                                normal);
             deviation[k] = sample == 0 ? normal[k % 4]
                                        : phi * deviation[k] + sqrt(1 - phi * phi) * normal[k % 4];
-            rdf->histogram[sample / EACH * BINS + k] +=
+            rdf->blocks.sums[sample / EACH * BINS + k] +=
                 mf_rdf_ideal_pairs(&few_bins, k, &cube, MANY) * true_g(k) *
                 (1 + scatter(k) * deviation[k]);
         }
-        rdf->block_samples[sample / EACH] += 1;
-        rdf->samples++;
+        rdf->blocks.samples[sample / EACH] += 1;
+        rdf->blocks.taken++;
     }
 }
 

@@ -3,43 +3,35 @@
 #include "shared/testing.h"
 
 /// Add the number of each sample to the sum of its block.
-static void take(struct sample_blocks *blocks, double *sums, size_t samples) {
-    for (size_t n = 0; n < samples; n++) {
-        if (mf_sample_blocks_are_full(blocks)) {
-            mf_sample_blocks_join(blocks, sums, 1);
-            mf_sample_blocks_double(blocks);
-        }
-        sums[mf_sample_blocks_take(blocks)] += (double)n;
-    }
+static void take(struct sample_blocks *blocks, size_t samples) {
+    for (size_t n = 0; n < samples; n++)
+        *mf_sample_blocks_next(blocks) += (double)n;
 }
 
 /// 100 samples fill 25 blocks of 4: 0 + 1 + 2 + 3, 4 + 5 + 6 + 7, …
 static void test_blocks_are_joined_where_nothing_is_planned(void **state) {
     (void)state;
     struct sample_blocks blocks;
-    double sums[40] = {0};
-    assert_ok(mf_sample_blocks_init(&blocks, 0));
-    take(&blocks, sums, 102);
+    assert_ok(mf_sample_blocks_init(&blocks, 0, 1));
+    take(&blocks, 102);
     assert_int_equal(blocks.each, 4);
     assert_int_equal(mf_sample_blocks_whole(&blocks), 25);
     for (size_t b = 0; b < 25; b++)
-        assert_true(sums[b] == 16.0 * (double)b + 6 && blocks.samples[b] == 4);
-    assert_true(sums[25] == 100 + 101 && blocks.samples[25] == 2);
+        assert_true(blocks.sums[b] == 16.0 * (double)b + 6 && blocks.samples[b] == 4);
+    assert_true(blocks.sums[25] == 100 + 101 && blocks.samples[25] == 2);
     mf_sample_blocks_clear(&blocks);
 }
 
 static void test_planned_samples_make_twenty_blocks(void **state) {
     (void)state;
     struct sample_blocks blocks;
-    double sums[20] = {0};
-    assert_ok(mf_sample_blocks_init(&blocks, 40));
+    assert_ok(mf_sample_blocks_init(&blocks, 40, 1));
     assert_int_equal(blocks.count, 20);
-    take(&blocks, sums, 39);
-    assert_true(sums[0] == 0 + 1 && sums[18] == 36 + 37 && sums[19] == 38);
-    assert_false(mf_sample_blocks_are_full(&blocks));
+    take(&blocks, 39);
+    assert_true(blocks.sums[0] == 0 + 1 && blocks.sums[18] == 36 + 37 && blocks.sums[19] == 38);
     assert_int_equal(mf_sample_blocks_whole(&blocks), 20);
     mf_sample_blocks_clear(&blocks);
-    assert_ok(mf_sample_blocks_init(&blocks, 3));
+    assert_ok(mf_sample_blocks_init(&blocks, 3, 1));
     assert_int_equal(blocks.count, 3);
     mf_sample_blocks_clear(&blocks);
 }

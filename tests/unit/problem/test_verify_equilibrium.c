@@ -29,12 +29,13 @@ static void make(struct made *made, gsl_rng *rng, double energy, double pairs) {
                                                .count = SAMPLES,
                                                .capacity = SAMPLES,
                                                .values = made->series[k]}};
-        made->observed[k] = (struct rdf_observed){.counted = {.bins = {.count = BINS},
-                                                              .pairs = 1,
-                                                              .planned = SAMPLES,
-                                                              .blocks = BLOCKS,
-                                                              .histogram = made->histogram[k],
-                                                              .block_samples = made->samples}};
+        made->observed[k] =
+            (struct rdf_observed){.counted = {.bins = {.count = BINS},
+                                              .pairs = 1,
+                                              .blocks = {.planned = SAMPLES,
+                                                         .count = BLOCKS,
+                                                         .samples = made->samples,
+                                                         .sums = made->histogram[k]}}};
         for (size_t n = 0; n < THERMODYNAMICS_QUANTITIES * SAMPLES; n++)
             made->series[k][n] =
                 gsl_ran_gaussian(rng, 1) + energy * (double)(n % SAMPLES) / SAMPLES;

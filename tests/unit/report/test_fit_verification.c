@@ -2,7 +2,7 @@
 #include "report/fit_verification.h"
 
 #include "observe/bonded_distribution.h"
-#include "observe/kirkwood_buff_observable.h"
+#include "observe/kirkwood_buff.h"
 
 #include "shared/testing.h"
 

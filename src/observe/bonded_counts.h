@@ -9,10 +9,9 @@ struct bonded_state {
     const struct molecules *molecules;
     int order;
     int dimensions;
-    struct sample_blocks blocks;
+    struct sample_blocks blocks;                   ///< of counts in the bins of all groups
     struct bonded_bins bins[MOLECULES_MAX_GROUPS]; ///< of each group
     size_t first[MOLECULES_MAX_GROUPS + 1];        ///< bin of each group among those of all
-    double *counts;                                ///< shape [blocks, bins of all groups]
     size_t parts;                                  ///< of the molecules
     double *of_part;                               ///< shape [parts, bins of all groups]
 };

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// What is made of the counts of bonds and angles: widths, bins that are joined, series of blocks.
+#include "base/memory.h"
+#include "observe/bonded_distribution.h"
+#include "observe/bonded_counts.h"
+
+#include <math.h>
+
+const double mf_bonded_distribution_seen = 1e-3;
+
+struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,
+                                                     const double *p) {
+    struct bonded_moments moments = {0};
+    double sum = 0, mean = 0, square = 0, peak = 0;
+    size_t first = bins->count, last = 0;
+    for (size_t k = 0; k < bins->count; k++) {
+        const double q = bonded_bins_centre(bins, k);
+        sum += p[k];
+        mean += p[k] * q;
+        peak = fmax(peak, p[k]);
+    }
+    mean /= sum;
+    for (size_t k = 0; k < bins->count; k++) {
+        square += p[k] * pow(bonded_bins_centre(bins, k) - mean, 2) / sum;
+        if (p[k] <= mf_bonded_distribution_seen * peak)
+            continue;
+        first = first == bins->count ? k : first;
+        last = k;
+    }
+    moments.mean = mean;
+    moments.deviation = sqrt(fmax(0, square - bins->width * bins->width / 12));
+    moments.seen = first < bins->count ? last + 1 - first : 0;
+    return moments;
+}
+
+double mf_bonded_distribution_narrow(int order, double mean) {
+    const struct bonded_kind *kind = mf_bonded_kinds[order];
+    return kind->is_length ? kind->narrow * mean : kind->narrow;
+}
+
+bool mf_bonded_distribution_is_constrained(int order, const struct bonded_moments *moments) {
+    return moments->deviation < mf_bonded_distribution_narrow(order, moments->mean);
+}
+
+// Bins that are joined when all has been counted --------------------------------------------------
+
+static double count_all(const struct bonded_state *s, int group, size_t bin) {
+    double count = 0;
+    for (size_t block = 0; block < s->blocks.count; block++)
+        count += s->blocks.sums[block * s->blocks.row + s->first[group] + bin];
+    return count;
+}
+
+/// How wide the bins of a group may be. Of several peaks the deviation is the sum of theirs: that
+/// of the normal distribution with the same ∫ p² dq, which is known, however narrow it is, by how
+/// many pairs of counts fall into the same bin, if they do.
+static double wanted_width(const struct bonded_state *s, int group) {
+    static const double fewest = 2, max = 5, scott = 3.49, enough = 40;
+    const struct bonded_bins *bins = &s->bins[group];
+    double all = 0, pairs = 0, mean = 0, square = 0;
+    for (size_t bin = 0; bin < bins->count; bin++) {
+        const double count = count_all(s, group, bin), q = bonded_bins_centre(bins, bin);
+        all += count;
+        pairs += count * (count - 1);
+        mean += count * q;
+        square += count * q * q;
+    }
+    if (all == 0)
+        return INFINITY;
+    mean /= all;
+    double deviation = sqrt(fmax(0, square / all - mean * mean));
+    if (pairs > enough)
+        deviation = fmin(deviation, all * (all - 1) * bins->width / (2 * sqrt(M_PI) * pairs));
+    return fmax(deviation, mf_bonded_distribution_narrow(s->order, mean)) /
+           fmin(max, fmax(fewest, cbrt(all) / scott));
+}
+
+/// The largest number of fine bins that make a whole number of bins and are not wider than wanted.
+static size_t bins_to_join(const struct bonded_state *s) {
+    enum { MIN = 100 };
+    double width = INFINITY;
+    for (int g = 0; g < s->molecules->groups[s->order]; g++)
+        width = fmin(width, wanted_width(s, g));
+    size_t of = s->bins[0].count / MIN;
+    while (of > 1 && (s->bins[0].count % of != 0 || (double)of * s->bins[0].width > width))
+        of--;
+    return of;
+}
+
+/// Join the bins of `rows` rows. All groups have a whole number of bins, so that a row is one run.
+static void join_rows(double *counts, size_t rows, size_t row, size_t of) {
+    for (size_t k = 0; k < rows * row / of; k++) {
+        double sum = 0;
+        for (size_t n = 0; n < of; n++)
+            sum += counts[k * of + n];
+        counts[k] = sum;
+    }
+}
+
+void mf_bonded_distribution_join(void *state) {
+    struct bonded_state *s = state;
+    const int groups = s->molecules->groups[s->order];
+    const size_t of = bins_to_join(s), row = s->first[groups];
+    join_rows(s->blocks.sums, s->blocks.count, row, of);
+    join_rows(s->of_part, s->parts, row, of);
+    for (int g = 0; g < groups; g++) {
+        s->bins[g].count /= of;
+        s->bins[g].width *= (double)of;
+        s->first[g + 1] = s->first[g] + s->bins[g].count;
+    }
+    s->blocks.row = row / of;
+}
+
+double *mf_bonded_distribution_counts(const void *state, int group, struct bonded_bins *bins) {
+    const struct bonded_state *s = state;
+    double *counts = mf_memory_zeroed(s->bins[group].count, sizeof *counts);
+    *bins = s->bins[group];
+    for (size_t bin = 0; counts && bin < bins->count; bin++)
+        counts[bin] = count_all(s, group, bin);
+    return counts;
+}
+
+// Blocks, and how the bins are correlated by them -------------------------------------------------
+
+size_t mf_bonded_series_blocks(const struct bonded_state *const *states, size_t count) {
+    size_t min = SIZE_MAX;
+    for (size_t k = 0; k < count; k++) {
+        const size_t blocks = mf_sample_blocks_whole(&states[k]->blocks);
+        min = blocks < min ? blocks : min;
+    }
+    return min;
+}
+
+void mf_bonded_series_find(const struct bonded_state *const *states, size_t count, int group,
+                           size_t blocks, double *series) {
+    const struct bonded_state *s = states[0];
+    const double terms = (double)mf_bonded_distribution_terms(s->molecules, s->order, group);
+    const size_t bins = s->bins[group].count;
+    for (size_t bin = 0; bin < bins; bin++)
+        for (size_t n = 0; n < count * blocks; n++) {
+            const struct bonded_state *of = states[n / blocks];
+            const size_t block = n % blocks;
+            series[bin * count * blocks + n] =
+                of->blocks.sums[block * of->blocks.row + s->first[group] + bin] /
+                (of->blocks.samples[block] * terms * s->bins[group].width);
+        }
+}
+
+enum status mf_bonded_distribution_independence(const void *const *states, size_t count, int group,
+                                                size_t first, size_t bins,
+                                                struct statistics_independence *found) {
+    const struct bonded_state *const *all = (const struct bonded_state *const *)states;
+    const size_t blocks = mf_bonded_series_blocks(all, count), values = count * blocks;
+    OWNED double *series = NULL;
+    TRY_ARRAY(series, all[0]->bins[group].count * values + 1);
+    mf_bonded_series_find(all, count, group, blocks, series);
+    return mf_statistics_independence(series + first * values, blocks, count, bins, found);
+}
