@@ -210,27 +210,12 @@ static void describe_noise_of_fit(const struct noises *noises, double factor,
         snprintf(text, OF_FIT_SIZE, ", with that of the fit's own samples %.2g", factor * all);
 }
 
-static double noise_of_target(const struct noises *noises) {
-    return sqrt(fmax(0, noises->both * noises->both - noises->own * noises->own));
-}
-
-/// Candidates that are simulated more shortly than the target is exact.
-static void print_what_is_wasted(struct progress *to, const struct noises *noises, const char *name,
-                                 double factor, const char *unit) {
-    static const double short_of = 2;
-    const double of_target = noise_of_target(noises);
-    if (noises->of_fit > short_of * of_target)
-        mf_progress_print(to,
-                          "noisy: the fit's own simulations know %s within %.2g%s, and its target "
-                          "within %.2g; more \"samples\" of the method use what the target knows",
-                          name, factor * noises->of_fit, unit, factor * of_target);
-}
-
 /// A verification that is shorter than target and fit are exact.
 static void print_what_is_hidden(struct progress *to, const struct noises *noises, const char *name,
                                  double factor, const char *unit) {
     static const double short_of = 2;
-    const double others = hypot(noise_of_target(noises), noises->of_fit);
+    const double of_target = sqrt(fmax(0, noises->both * noises->both - noises->own * noises->own));
+    const double others = hypot(of_target, noises->of_fit);
     if (others > 0 && noises->own > short_of * others)
         mf_progress_print(to,
                           "short: the verification's own noise of %s is %.2g%s, %.2g times that of "
@@ -261,8 +246,6 @@ static void print_distance(struct progress *to, const struct fit_file *fit,
                       !(distance->rms > missed * noises.both) ? ""
                       : fitted ? ": not met: nothing better was found"
                                : ": not fitted, only compared");
-    if (fitted && fit->method->kind == INVERSE_MATCHING)
-        print_what_is_wasted(to, &noises, mf_targets_name(kind), factor, name);
     if (fitted && known > 1)
         print_what_is_hidden(to, &noises, mf_targets_name(kind), factor, name);
 }

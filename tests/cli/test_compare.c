@@ -71,6 +71,7 @@ static void test_compare_takes_a_simulation_beside_a_fit(void **state) {
     RUN_PROGRAM(&result, "compare", "cold", "fit", "-o", "both");
     run_program_assert_code(&result, 0);
     assert_string_equal(result.err, "");
+    assert_contains(result.out, "p_open");
     char *text = temporary_folder_read("both/figures/compare.svg");
     assert_contains(text, "target");
     free(text);
