@@ -14,6 +14,7 @@ import hashlib
 import io
 import os
 import re
+import stat
 import subprocess
 import sys
 import tarfile
@@ -109,7 +110,8 @@ def write_wheel(directory: str, files: dict[str, bytes], system: str = "linux") 
         def put(inside: str, content: bytes) -> None:
             about = zipfile.ZipInfo(inside, (2000, 1, 1, 0, 0, 0))  # the same files, the same wheel
             about.compress_type = zipfile.ZIP_DEFLATED
-            about.external_attr = (0o755 if "/lib/" in inside else 0o644) << 16
+            # pip keeps what may be run of regular files alone.
+            about.external_attr = (stat.S_IFREG | (0o755 if "/lib/" in inside else 0o644)) << 16
             archive.writestr(about, content)
         for inside, content in sorted(files.items()):
             digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=")

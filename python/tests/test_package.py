@@ -4,6 +4,7 @@
 import os
 import re
 import shutil
+import stat
 import subprocess
 import sys
 import tarfile
@@ -27,7 +28,8 @@ def wheel(tmp_path_factory):
     with zipfile.ZipFile(place / name) as archive:
         archive.extractall(place / "installed")
         for about in archive.infolist():
-            (place / "installed" / about.filename).chmod(about.external_attr >> 16)
+            if stat.S_ISREG(about.external_attr >> 16):
+                (place / "installed" / about.filename).chmod(0o777 & about.external_attr >> 16)
     return place / "installed"
 
 
