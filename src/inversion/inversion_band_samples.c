@@ -162,9 +162,11 @@ enum status mf_inversion_band_add_samples(struct inversion *inversion, double bi
     for (size_t s = 0; s < inversion->states; s++)
         CHECK(add_number(inversion, birge, inversion->state[s].bulk.slope, &added, &bulk[s]));
     inversion->course.band.ramp.bulk_samples = bulk[0];
-    for (size_t s = 0; s < inversion->states; s++)
-        inversion->state[s].work.memory *=
-            fmax(1, added.slowness[s] / inversion->state[s].inefficiency);
+    for (size_t s = 0; s < inversion->states; s++) {
+        struct inversion_state *state = &inversion->state[s];
+        state->open.independent = state->replicas.counts.count / fmax(1, added.slowness[s]);
+        state->work.memory *= fmax(1, added.slowness[s] / state->inefficiency);
+    }
 done:
     for (size_t k = 0; k < added.count; k++)
         mf_memory_free(added.u[k]);

@@ -192,6 +192,14 @@ static bool has_sides(const struct replicas *replicas) {
            replicas->count >= REPLICAS_MIN_OF_SIDES && replicas->count % (tilts ? 4 : 2) == 0;
 }
 
+/// Take a quantity that is slower.
+static void take_slower(struct inverse_slowest *slowest, double independent, const char *name) {
+    if (slowest->quantity[0] != '\0' && !(independent < slowest->independent))
+        return;
+    slowest->independent = independent;
+    snprintf(slowest->quantity, sizeof slowest->quantity, "%s", name);
+}
+
 void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
                                       struct inverse_slowest *slowest) {
     const struct replicas *replicas = &state->replicas;
@@ -205,11 +213,10 @@ void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
             replicas->counts.count /
             fmax(mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, number, numbers),
                  mf_replicas_inefficiency(replicas, 1, number, numbers));
-        if (slowest->quantity[0] != '\0' && !(independent < slowest->independent))
-            continue;
-        slowest->independent = independent;
-        snprintf(slowest->quantity, sizeof slowest->quantity, "%s", quantity[k].name);
+        take_slower(slowest, independent, quantity[k].name);
     }
+    if (state->open.independent > 0)
+        take_slower(slowest, state->open.independent, "the potential's ramp");
 }
 
 enum status mf_inversion_equilibrium_check(const struct inversion_state *state,

@@ -42,7 +42,8 @@ struct inversion_unequilibrated {
 double mf_inversion_equilibrium_shift(const struct replicas *replicas, size_t number);
 
 /// What the samples of a state forget most slowly, as a mean over its bins: a section, a size, the
-/// longest waves, the energy, the pressure. Tested: test_inversion_equilibrium.
+/// longest waves, the energy, the pressure; or the ramp that they ask for
+/// (mf_inversion_band_add_samples). Tested: test_inversion_equilibrium.
 /// @param[in,out] slowest  of other states, which it stays where it is slower
 void mf_inversion_equilibrium_slowest(const struct inversion_state *state,
                                       struct inverse_slowest *slowest);

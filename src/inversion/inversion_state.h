@@ -86,9 +86,10 @@ struct inversion_state {
         double min; ///< mf_hnc_closure_min_intramolecular; 0: not known
     } inside;       ///< molecules by themselves, inversion/inversion_intramolecular.h
     struct {
-        double *weight; ///< of S in it, shape [known]
-        double samples; ///< its standard error by the samples of all states
-        double rest;    ///< and without; 0: not known
+        double *weight;     ///< of S in it, shape [known]
+        double samples;     ///< its standard error by the samples of all states
+        double rest;        ///< and without; 0: not known
+        double independent; ///< samples of the slowest number that these are worth; 0: not known
     } open; ///< A of the step, or the pressure that it asks for, of which the samples tell least;
             ///< as the last iteration knew it, mf_inversion_band_add_samples
     struct inversion_basis basis;    ///< of methods that go by the gradient; else its count is 0

@@ -227,6 +227,9 @@ static void test_slowest_number_is_told_with_its_independent_samples(void **stat
         sum += 1 / slowest.independent;
     }
     mf_inversion_equilibrium_slowest(&made.state, &of_other); // another state's is slower
+    made.state.open.independent = slowest.independent / 2;
+    mf_inversion_equilibrium_slowest(&made.state, &slowest);
+    assert_string_equal(slowest.quantity, "the potential's ramp");
     assert_true(of_other.independent == 1 && strcmp(of_other.quantity, "g(r)") == 0);
     print_message("%.2f independent samples, named in %d of %d\n", TRIALS / sum, named, TRIALS);
     assert_true(named > 0.8 * TRIALS);
