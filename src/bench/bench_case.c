@@ -3,7 +3,9 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "base/number_text.h"
 #include "base/simd.h"
+#include "base/statistics.h"
 #include "dynamics/respa.h"
 #include "observe/observable.h"
 #include "scene/heading.h"
@@ -334,6 +336,25 @@ static double rate_of(const struct variant *variant) {
     return mf_bench_median(variant->bench.busy_rate, variant->bench.repeats);
 }
 
+/// What a part adds to a step, a share of the step without it: the mean over the rounds, in each of
+/// which both were timed in turn.
+static struct running_mean find_added(const struct variant *plain, const struct variant *variant) {
+    struct running_mean added = {0};
+    for (uint64_t round = 0; round < variant->bench.repeats; round++) {
+        const double ratio = plain->bench.busy_rate[round] / variant->bench.busy_rate[round];
+        mf_statistics_add(&added, (variant->less ? 1 / ratio : ratio) - 1);
+    }
+    return added;
+}
+
+/// "+65.9(12)" per cent.
+static void print_per_cent(const struct running_mean *added, char text[NUMBER_TEXT_SIZE + 1]) {
+    mf_number_text(100 * added->mean, 100 * mf_statistics_standard_error(added), text + 1);
+    text[0] = '+';
+    if (text[1] == '-')
+        memmove(text, text + 1, NUMBER_TEXT_SIZE);
+}
+
 static void report(const struct skips *skips, FILE *out, FILE *table,
                    const struct bench_scene *scene, const struct bench_how *how) {
     const double plain = rate_of(&skips->variant[0]);
@@ -345,18 +366,22 @@ static void report(const struct skips *skips, FILE *out, FILE *table,
         const struct variant *variant = &skips->variant[k];
         const double other = rate_of(variant);
         const double with = variant->less ? plain : other, without = variant->less ? other : plain;
-        fprintf(out, "  %-36s %8.0f %8.0f  %+.0f %%%s\n", variant->part, with, without,
-                100 * (without / with - 1), variant->less ? "" : "  (skipped)");
+        const struct running_mean added = find_added(&skips->variant[0], variant);
+        char text[NUMBER_TEXT_SIZE + 1];
+        print_per_cent(&added, text);
+        fprintf(out, "  %-36s %8.0f %8.0f  %s %%%s\n", variant->part, with, without, text,
+                variant->less ? "" : "  (skipped)");
         if (table)
-            fprintf(table, "%s\t%s\t%s\t%s\t%s\t%.6g\t%.6g\t%.4g\n", scene->name, how->isa,
+            fprintf(table, "%s\t%s\t%s\t%s\t%s\t%.6g\t%.6g\t%.4g\t%.2g\n", scene->name, how->isa,
                     how->precision, variant->part, variant->less ? "no" : "yes", with, without,
-                    without / with - 1);
+                    added.mean, mf_statistics_standard_error(&added));
     }
     fflush(out);
 }
 
 void mf_bench_skips_head(FILE *table) {
-    fprintf(table, "# scene\tisa\tprecision\tpart\tskipped\twith[1/s]\twithout[1/s]\tadds[1]\n");
+    fprintf(table, "# scene\tisa\tprecision\tpart\tskipped\twith[1/s]\twithout[1/s]\tadds[1]\t"
+                   "adds_error[1]\n");
 }
 
 enum status mf_bench_skips(FILE *out, FILE *table, const struct bench_scene *scene,

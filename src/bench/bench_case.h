@@ -91,7 +91,7 @@ void mf_bench_case_clear(struct bench_case *bench);
 
 /// Time the scene as a fit runs it, and, in turn with it, with one part more or less: each part
 /// that it has left out, each that it skips added. Print a line each, with the instruction set and
-/// precision of `how`.
+/// precision of `how`, and the standard error of what the part adds.
 /// @param[in] table  for the same tab-separated, or NULL
 /// Fails: as mf_bench_case_begin. Tested: test_bench_case, cli/test_bench.
 enum status mf_bench_skips(FILE *out, FILE *table, const struct bench_scene *scene,

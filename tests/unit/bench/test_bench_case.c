@@ -137,6 +137,12 @@ static void check_skips(bool dissipative, size_t parts) {
     assert_contains(text, "tiny: 100 particles");
     assert_contains(text, "g(r) at every step");
     assert_contains(rows, "a new neighbour list at every step\tyes\t");
+    double with, without, added, error;
+    assert_int_equal(sscanf(strstr(rows, "step\tyes\t"), "step\tyes\t%lf\t%lf\t%lf\t%lf", &with,
+                            &without, &added, &error),
+                     4);
+    assert_true(error > 0); // means and medians of five rounds of noise
+    assert_true(fabs(without / with - 1 - added) < 5 * error);
     fluid_clear(&fluid);
 }
 
