@@ -19,8 +19,10 @@ static enum status take_column(const struct data_table *table, const char *file,
     const size_t place = mf_data_table_find(table, column->name);
     if (place == 0 && column->required)
         return mf_status_fail(STATUS_BAD_INPUT, "%s: no column called %s", file, column->name);
-    if (place > 0 && mf_data_table_unit(table, place - 1, unit) &&
-        strcmp(unit, column->unit) != 0) {
+    if (place > 0 && !mf_data_table_unit(table, place - 1, unit))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: the line of names says no unit of %s: \"%s\"",
+                              file, column->name, table->header);
+    if (place > 0 && strcmp(unit, column->unit) != 0) {
         if (!mf_units_known(units))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "%s: %s is in \"%s\", but used.json has no units", file,

@@ -87,7 +87,7 @@ static enum status find_by_samples(struct inversion *inversion, double birge, co
     for (size_t a = 0; a < n; a++)
         x[a] = product(inversion->course.band.inverse + a * n, v, n) / birge;
     *found = (struct by_samples){0};
-    for (size_t s = 0; s < inversion->states; s++) {
+    for (size_t s = 0; s < inversion->equations.states; s++) {
         const struct inversion_state *state = &inversion->state[s];
         double *q = added->q + s * n;
         mf_inversion_equations_weigh(&inversion->equations, s, x, q);
@@ -117,7 +117,9 @@ static enum status add(struct inversion *inversion, const double *v, const struc
     *rest = fmax(0, before + more - found->all);
     added->factor[added->count] = before > 0 ? more / (before * before) : 0;
     added->u[added->count] = u;
-    mf_inversion_band_add_square(inversion, added->factor[added->count++], u);
+    if (before > 0) // not of a ramp without bins
+        mf_inversion_band_add_square(inversion, added->factor[added->count], u);
+    added->count++;
 done:
     return status;
 }

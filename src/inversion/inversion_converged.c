@@ -217,13 +217,15 @@ static void record_drifts(const struct inversion *inversion, struct inversion_dr
     drifts->near++;
 }
 
-/// Whether the samples leave A, and the pressure, no less known than all else does, or were once
-/// longer for that; else the next ones are.
+/// Whether the samples leave A, and the pressure, no less known than all else does, or are longer
+/// for that already; else the next ones are, if there are any.
 static bool is_known(struct inversion *inversion) {
-    int *refining = &inversion->course.progress.refining;
-    const bool known =
-        *refining == INVERSION_REFINED || !mf_inversion_band_is_noisy(inversion->state);
-    *refining = known ? *refining : INVERSION_REFINES;
+    struct inversion_progress *progress = &inversion->course.progress;
+    const struct inversion_state *first = inversion->state;
+    const bool last = progress->iteration + 1 >= inversion->parameters.iterations;
+    const bool known = progress->refine_sweeps > 0 || last || !mf_inversion_band_is_noisy(first);
+    if (!known)
+        progress->refine_sweeps = first->work.sweeps / first->replicas.count;
     return known;
 }
 
@@ -231,18 +233,15 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     struct inversion_progress *const progress = &inversion->course.progress;
     struct inversion_drifts *drifts = &progress->drifts;
     progress->on_its_way = false;
-    if (progress->refining == INVERSION_REFINES)
-        progress->refining = INVERSION_REFINED;
     if (!kept) // it goes back to the one before
         return false;
     const bool meets = progress->best.precise && meets_targets(inversion);
     const bool unsettled = inversion->assessment.unequilibrated.found;
     if (unsettled && !meets)
         return false;
-    if (!meets && !mf_inversion_is_near(inversion)) {
+    if (!meets && !mf_inversion_is_near(inversion))
         drifts->near = drifts->met = 0;
-        progress->refining = INVERSION_NOT_REFINED;
-    } else
+    else
         record_drifts(inversion, drifts);
     progress->on_its_way = is_on_its_way(inversion);
     if (!meets)

@@ -29,9 +29,6 @@ struct inversion_drifts {
     double ramp[INVERSION_MAX_DRIFTS], bulk[INVERSION_MAX_DRIFTS][INVERSE_MAX_STATES];
 };
 
-/// Longer samples for what g hardly sees, once.
-enum { INVERSION_NOT_REFINED, INVERSION_REFINES, INVERSION_REFINED };
-
 /// What a checkpoint keeps besides arrays and samplers.
 struct inversion_progress {
     uint32_t iteration;
@@ -47,15 +44,16 @@ struct inversion_progress {
     double newton_failed_error; ///< of g, from where a step with another in reserve led away, or
                                 ///< the first
     struct inversion_drifts drifts;
-    bool on_its_way;   ///< the last two keep one direction: what earlier iterations ask for, moved
-                       ///< by a response that changes on the way, would hold the fit back
-    int refining;      ///< INVERSION_REFINES: it would have ended, but for the noise of its samples
-    bool second_start; ///< it began again, from −k_B T ln g
-    bool lost;         ///< none of the starts settled
-    bool gave_up;      ///< the last samples had not settled when they had cost enough
-    bool weighs_starts; ///< the start that the target alone says is tried beside that of forces
-    bool trial;         ///< the present potential is that
-    bool from_forces;   ///< the start of the best was that of forces
+    bool on_its_way; ///< the last two keep one direction: what earlier iterations ask for, moved
+                     ///< by a response that changes on the way, would hold the fit back
+    uint64_t refine_sweeps; ///< of each replica, that longer samples may take: all before the first
+                            ///< time that nothing but their noise in A kept the fit from its end; 0
+    bool second_start;      ///< it began again, from −k_B T ln g
+    bool lost;              ///< none of the starts settled
+    bool gave_up;           ///< the last samples had not settled when they had cost enough
+    bool weighs_starts;     ///< the start that the target alone says is tried beside that of forces
+    bool trial;             ///< the present potential is that
+    bool from_forces;       ///< the start of the best was that of forces
 };
 
 /// Curves are of shape [points].
@@ -146,8 +144,9 @@ bool mf_inversion_may_end(const struct inversion *inversion);
 /// each other: by the noise of C chi^2 of hexane swings about its bound. The way has an end, as the
 /// prior is that of Φ (inversion_band.h), and a fit whose iterations do not reach it has not
 /// converged. Iterations that are not kept do not count, and the last one must have settled.
-/// Where its samples leave more open of A or of a pressure than all else does, by half, those of
-/// the next one are longer, once. Tested: test_inversion_converged.
+/// Where its samples leave more open of A or of a pressure than all else does, by half, those near
+/// the targets are longer from there on, and the fit ends with the first that meets them. Tested:
+/// test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
 /// Find a stretch of a g(r) that is off by more than noise, though all of it may agree: few bins

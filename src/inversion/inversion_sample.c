@@ -192,11 +192,10 @@ static bool does_for_step(const struct sampling *sampling) {
            !sampling->inversion->course.progress.gave_up;
 }
 
-/// Whether samples may be longer for A alone: until they cost as much as all before them.
+/// Whether samples may be longer for A alone.
 static bool may_refine(const struct sampling *sampling) {
-    const struct inversion_state *state = sampling->state;
-    return sampling->inversion->course.progress.refining == INVERSION_REFINES &&
-           sampling->sweeps < state->work.sweeps / (uint64_t)state->parameters->replicas;
+    return sampling->sweeps < sampling->inversion->course.progress.refine_sweeps &&
+           may_be_last(sampling);
 }
 
 /// Whether more samples help. Replicas that are stuck would never be distinguished from noise.
@@ -303,6 +302,7 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
                                              .mean = NAN}};
     state->assessment.stretch = progress->stretch;
     unequilibrated->for_long = false;
+    state->open.independent = 0;
     TRY(mf_inversion_tabulate(state));
     state->work.evaluations += replicas;
     const enum status status = sample_all(&sampling);

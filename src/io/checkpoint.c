@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-static const char magic[16] = "mesofit state 7";
+static const char magic[16] = "mesofit state 8";
 
 /// Bytes of the file, and their checksum so far.
 struct writer {

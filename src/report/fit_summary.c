@@ -212,8 +212,9 @@ static void write_ramp(struct json_writer *writer, const struct inverse_ramp *ra
     if (bulk == TARGET_PRESSURE) {
         write_quantity(writer, "ramp_pressure", "1/lambda^d", ramp->bulk);
         write_quantity(writer, "pressure_left_open", "k_B T_0/lambda^d", ramp->bulk_open);
-        write_quantity(writer, "pressure_left_open_by_samples", "k_B T_0/lambda^d",
-                       ramp->bulk_samples);
+        if (ramp->bulk_samples > 0) // not known of coefficients
+            write_quantity(writer, "pressure_left_open_by_samples", "k_B T_0/lambda^d",
+                           ramp->bulk_samples);
     } else
         write_quantity(writer, "density_left_open", "1/lambda^d", ramp->bulk_open);
     write_known(writer, "directions", ramp->directions);

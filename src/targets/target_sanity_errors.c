@@ -189,15 +189,18 @@ static void warn_of_missing_rows(const struct target_rdf *target, const char *na
                           name, mf_rdf_bins_centre(&target->bins, 0) * length, unit, target->g[0]);
 }
 
-/// A potential that ends before its "cutoff" is not the one that was asked for.
+/// A potential that ends before its "cutoff" is not the one that was asked for. That a mixture ends
+/// with its shortest pair is told elsewhere.
 static void warn_of_missing_end(const struct target_rdf *target, const char *name,
                                 const struct scene *scene,
                                 const struct target_sanity_listener *listener) {
+    const struct target_rows *rows = &target->rows;
     const double end = mf_rdf_bins_edge(&target->bins, target->bins.count);
+    const double last = rows->count > 0 ? rows->x[rows->count - 1] : INFINITY;
     const double cutoff = target->parameters.cutoff;
     double length;
     const char *unit = mf_target_sanity_length(scene, &length);
-    if (cutoff > end + target->bins.width)
+    if (cutoff > last + target->bins.width)
         mf_target_sanity_warn(listener,
                               "mesofit: warning: target.%s.cutoff: %.4g %s is beyond the end of "
                               "the table: g(r) and the potential end at %.4g %s",

@@ -127,7 +127,9 @@ static void tell_others(const struct fit_file *fit, const struct target_sanity_l
     }
     if (used > 0 && fit->unknown[UNKNOWN_POTENTIAL].wanted)
         mf_target_sanity_warn(
-            listener, "no g(r) is given of %s: their potential is not looked for; %s", others,
+            listener,
+            "mesofit: warning: no g(r) is given of %s: their potential is not looked for; %s",
+            others,
             mf_fit_engine_knows_more(fit) ? "the engine has it" : "it is that of scene.known");
 }
 

@@ -37,9 +37,9 @@ struct worth {
     double error;       ///< rms where the law is 0.1 to 3 k_B T
 };
 
-static struct data_table fit(void **state, const struct cut *cut) {
+static struct data_table fit(void **state, const struct cut *cut, int seed) {
     static struct run_program_result result;
-    char text[1024], folder[512], run[1024], out[1024], path[1100];
+    char text[1024], folder[512], run[1024], out[1024], path[1100], of_seed[16];
     struct data_table table;
     assert_non_null(getcwd(folder, sizeof folder));
     const int length =
@@ -52,16 +52,18 @@ static struct data_table fit(void **state, const struct cut *cut) {
     snprintf(run, sizeof run, "%s",
              temporary_folder_write(*state, "run.json", text, (size_t)length));
     snprintf(out, sizeof out, "%s", temporary_folder_file(*state, "out"));
+    snprintf(of_seed, sizeof of_seed, "%d", seed);
     run_program(&result, &(struct run_program_how){.work_limit = 600},
-                (const char *const[]){"fit", run, "-o", out, "--quiet", NULL});
+                (const char *const[]){"fit", run, "-o", out, "--seed", of_seed, "--force",
+                                      "--quiet", NULL});
     run_program_assert_code(&result, 0);
     snprintf(path, sizeof path, "%s/potential.tsv", out);
     assert_ok(mf_data_table_read(&table, path, ERROR));
     return table;
 }
 
-static struct worth judge(void **state, const struct cut *cut) {
-    struct data_table table = fit(state, cut);
+static struct worth judge_seed(void **state, const struct cut *cut, int seed) {
+    struct data_table table = fit(state, cut, seed);
     double squares = 0, count = 0, along = 0, ramps = 0, beside = 0, error = 0, of_error = 0;
     for (int pass = 0; pass < 2; pass++)
         for (size_t k = 0; k + 1 < table.rows; k++) {
@@ -90,6 +92,14 @@ static struct worth judge(void **state, const struct cut *cut) {
                   cut->folder, cut->range, cut->pressure, worth.off, worth.beside, worth.error);
     assert_true(count > 20);
     return worth;
+}
+
+/// By two fits, rms: what a fit takes the slope at its end for has the noise of its samples.
+static struct worth judge(void **state, const struct cut *cut) {
+    const struct worth one = judge_seed(state, cut, 1), two = judge_seed(state, cut, 2);
+    return (struct worth){hypot(one.off, two.off) / sqrt(2),
+                          hypot(one.beside, two.beside) / sqrt(2),
+                          hypot(one.error, two.error) / sqrt(2)};
 }
 
 /// A screened Coulomb repulsion of which 0.25 k_B T is cut off at 2.4. By its counts alone Φ would
