@@ -3,7 +3,7 @@
 # summary itself before one of the same name within it, as the unit "pressure".
 function digits(value, error,   power) {
     if (!(error > 0))
-        return sprintf("%.6g", value)
+        return sprintf(value == int(value) ? "%.0f" : "%.3g", value)
     power = int(log(error) / log(10)) - (log(error) < 0)
     if (error / 10 ^ power < 1.95)
         power--
