@@ -102,14 +102,14 @@ static double last_row(const struct rdf_bins *bins, size_t bin, size_t rows) {
 /// are cut at, 2.5 σ: with less, Φ of a hot liquid bent to 0 too soon, by two of its errors.
 static const double min_reach = 2.3;
 
-/// Centre of the last row that is used: where g is seen to differ from 1, and all of the bin within
-/// half of a box that is given and not much too small.
+/// Centre of the last row that is used: where g is seen to differ from its tail, and all of the bin
+/// within half of a box that is given and not much too small.
 static double find_cutoff(const struct fit_choice *c, const char **why) {
     static const double min_of_box = 0.8;
     const double whole = c->scales.range - 0.5 * c->rdf->bins.width;
     double cutoff = fmin(whole, fmax(c->scales.seen, min_reach * c->scales.neighbour));
-    *why = "beyond, g differs from 1 by less than 0.03 or its noise, as it may without forces "
-           "there";
+    *why = "beyond, g differs from its tail by less than 0.03 or its noise, as it may without "
+           "forces there";
     if (c->leader) {
         const struct rdf_bins *bins = target_pairs_bins(target_files_rdf(&c->leader->files));
         *why = "as the first state has it";

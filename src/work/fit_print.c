@@ -81,13 +81,14 @@ static enum status warn_of_range(const struct fit_file *fit,
                  near = 2 * mf_stages_pairs_within(setup, enough);
     const char *unit = mf_target_sanity_length(&fit->scene, &length);
     if (others > many && others > more * near)
-        mf_target_sanity_warn(listener,
-                              "mesofit: warning: target.rdf: %.0f others are within its range of "
-                              "each bead, which makes the fit slow; within %.4g %s, beyond which g "
-                              "differs from 1 by less than %g or its noise, there are %.0f; a "
-                              "\"cutoff\" there saves that time, and ends the potential, too: what "
-                              "its law would do beyond is then left open",
-                              others, enough * length, unit, fit_scales_little, near);
+        mf_target_sanity_warn(
+            listener,
+            "mesofit: warning: target.rdf: %.0f others are within its range of "
+            "each bead, which makes the fit slow; within %.4g %s, beyond which g "
+            "differs from its tail by less than %g or its noise, there are %.0f; a "
+            "\"cutoff\" there saves that time, and ends the potential, too: what "
+            "its law would do beyond is then left open",
+            others, enough * length, unit, fit_scales_little, near);
     return STATUS_OK;
 }
 
