@@ -323,7 +323,8 @@ void mf_inversion_equations_weigh(struct inversion_equations *equations, size_t 
     const gsl_vector_const_view from = gsl_vector_const_view_array(x, known);
     const gsl_matrix_const_view l = gsl_matrix_const_view_array(equations->noise, known, known);
     gsl_vector_view to = gsl_vector_view_array(q, known);
-    mf_inversion_noise_find(state, equations->kind[s], NULL, equations->noise);
+    if (equations->reduced) // else it is that of the system
+        mf_inversion_noise_find(state, equations->kind[s], NULL, equations->noise);
     gsl_blas_dgemv(CblasNoTrans, 1 / own.temperature, &response.matrix, &from.vector, 0,
                    &to.vector);
     gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &l.matrix, &to.vector);
