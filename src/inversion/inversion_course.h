@@ -49,12 +49,12 @@ struct inversion_progress {
     uint64_t refine_sweeps; ///< of each replica, that longer samples may take: all before the first
                             ///< time that nothing but their noise in A kept the fit from its end;
                             ///< 0: none of the kind yet
-    bool second_start;  ///< it began again, from −k_B T ln g
-    bool lost;          ///< none of the starts settled
-    bool gave_up;       ///< the last samples had not settled when they had cost enough
-    bool weighs_starts; ///< the start that the target alone says is tried beside that of forces
-    bool trial;         ///< the present potential is that
-    bool from_forces;   ///< the start of the best was that of forces
+    bool second_start;      ///< it began again, from −k_B T ln g
+    bool lost;              ///< none of the starts settled
+    bool gave_up;           ///< the last samples had not settled when they had cost enough
+    bool weighs_starts;     ///< the start that the target alone says is tried beside that of forces
+    bool trial;             ///< the present potential is that
+    bool from_forces;       ///< the start of the best was that of forces
 };
 
 /// Curves are of shape [points].
