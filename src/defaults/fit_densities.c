@@ -173,7 +173,8 @@ void mf_fit_densities_state(const struct fit_file *fit, struct inverse_problem *
 }
 
 static bool finds_energies(const struct inverse_method *method) {
-    return method->kind == INVERSE_INVERSION && method->knows_molecules && !method->restricted;
+    return (method->kind == INVERSE_INVERSION || method->kind == INVERSE_DIRECT) &&
+           method->knows_molecules && !method->restricted;
 }
 
 enum status mf_fit_densities_check(const struct fit_file *fit, const char *file) {

@@ -7,6 +7,7 @@
 #include "inversion/force_matching.h"
 
 #include "base/memory.h"
+#include "forces/many_body.h"
 #include "inversion/force_solve.h"
 #include "inversion/inversions.h"
 #include "problem/group_kind.h"
@@ -16,9 +17,12 @@
 
 /// What of Φ is asked for: ∫ of a force between two places is its value, up to a sign.
 struct reading {
+    const struct inverse_problem *problem;
+    const struct potential_grid *grid;
     const struct force_equations *equations;
-    const struct force_solution *solution;
-    double *weight; ///< shape [unknowns]
+    struct force_solution solution;
+    double *weight; ///< of c in each known value, shape [known, unknowns]
+    double *mean;   ///< of c in what is a convention, shape [unknowns]
 };
 
 static const struct force_curve *find_curve(const struct force_equations *equations, int order,
@@ -47,121 +51,229 @@ static enum status find_pair(const struct inverse_problem *problem, size_t pair,
     return mf_status_fail(STATUS_BAD_INPUT, "target.forces: it has no pairs %s", name);
 }
 
+/// The density whose weight is that of the target.
+static const struct force_curve *find_density(const struct inverse_problem *problem) {
+    static const double same = 1e-6;
+    const struct force_equations *const equations = problem->forces;
+    const struct weighted_density_settings *const weight = mf_group_kind_density(&problem->targets);
+    for (size_t n = 0; n < equations->curves; n++) {
+        const struct force_curve *const curve = &equations->curve[n];
+        if (curve->order == FORCES_OF_DENSITY &&
+            fabs(curve->inner_cutoff - weight->inner_cutoff) < same * weight->cutoff &&
+            fabs(curve->cutoff - weight->cutoff) < same * weight->cutoff)
+            return curve;
+    }
+    return NULL;
+}
+
 static enum status find_group(const struct inverse_problem *problem,
                               const struct bonded_unknown *unknown,
                               const struct force_curve **curve) {
+    const bool of_density = unknown->order == INVERSE_LOCAL_DENSITY;
     const char *const name = mf_group_kind_group(&problem->scene, unknown);
-    *curve = unknown->order == INVERSE_LOCAL_DENSITY
-                 ? NULL
-                 : find_curve(problem->forces, unknown->order, name);
+    *curve = of_density ? find_density(problem) : find_curve(problem->forces, unknown->order, name);
     if (*curve)
         return STATUS_OK;
+    if (of_density)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "target.forces: it has no local density with the weight of "
+                              "\"%s\": measure --forces and --weighted-density together",
+                              name);
     return mf_status_fail(STATUS_BAD_INPUT, "target.forces: it has no %s \"%s\"",
                           mf_group_kind_name(unknown->order), name);
 }
 
-/// ∫ of the force of a curve, and its standard error: of the forces, and of straight lines between
-/// their nodes, of which the difference is about three.
-static double integrate(const struct reading *from, const struct force_curve *curve, double begin,
-                        double end, double *error) {
-    const struct force_solution *const s = from->solution;
-    const size_t first = curve->first, last = first + curve->nodes;
-    double value = 0, variance = 0, coarse = 0;
-    memset(from->weight, 0, s->size * sizeof *from->weight);
-    mf_force_solution_integral(s, curve, begin, end, from->weight);
-    for (size_t k = first; k < last; k++) {
-        double sum = 0;
-        for (size_t l = first; l < last; l++)
-            sum += s->covariance[k * s->size + l] * from->weight[l];
-        value += from->weight[k] * s->value[k];
-        coarse += from->weight[k] * s->coarse[k];
-        variance += from->weight[k] * sum;
-    }
-    *error = hypot(sqrt(fmax(0, variance)), (coarse - value) / 2);
-    return value;
-}
-
-/// Φ = ∫ of the force from r to where it ends, less what is known of it.
-static enum status read_pairs(const struct inverse_problem *problem,
-                              const struct potential_grid *grid, const struct reading *from,
-                              double *phi, double *error) {
-    for (size_t n = 0; n < grid->pairs_known; n++) {
-        const size_t point = grid->known_point[n], pair = point / (grid->bins + 1);
-        const struct curve *const known = inverse_law_curve(&grid->beside, (int)pair);
+/// Φ = ∫ of the force from r to where it ends.
+static enum status weigh_pairs(const struct reading *from) {
+    const struct potential_grid *const grid = from->grid;
+    for (size_t a = 0; a < grid->pairs_known; a++) {
+        const size_t point = grid->known_point[a], pair = point / (grid->bins + 1);
         const struct force_curve *curve;
-        TRY(find_pair(problem, pair, &curve));
+        TRY(find_pair(from->problem, pair, &curve));
         const double last = curve->low + curve->width * (double)(curve->nodes - 1);
         const double end = fmin(last, grid->r[grid->pair_points - 1]);
-        const double r = fmin(grid->r[point], end);
-        phi[point] = integrate(from, curve, r, end, &error[point]);
-        phi[point] -= known ? mf_curve_value(known, grid->r[point]) : 0;
+        mf_force_solution_integral(&from->solution, curve, fmin(grid->r[point], end), end,
+                                   from->weight + a * from->solution.size);
     }
     return STATUS_OK;
 }
 
-/// The known point of a group where its target is largest.
-static size_t most_likely(const struct bonded_grid *own) {
-    size_t most = 0;
-    for (size_t k = 0; k < own->known; k++)
-        if (own->target[own->first + k] > own->target[own->first + most])
-            most = k;
-    return own->below + most;
+/// The constant of U is a convention and has no error: its mean over the target is 0.
+static void take_mean_off(const struct bonded_grid *own, size_t size, double *weight,
+                          double *mean) {
+    const double sum = mf_bonded_grid_mean(own) * (double)own->known;
+    memset(mean, 0, size * sizeof *mean);
+    for (size_t a = 0; a < own->known; a++)
+        for (size_t k = 0; k < size; k++)
+            mean[k] += own->target[own->first + a] / sum * weight[a * size + k];
+    for (size_t a = 0; a < own->known; a++)
+        for (size_t k = 0; k < size; k++)
+            weight[a * size + k] -= mean[k];
 }
 
-/// U = −∫ of the force from where U is least.
-static enum status read_groups(const struct inverse_problem *problem,
-                               const struct potential_grid *grid, const struct reading *from,
-                               double *phi, double *error) {
+/// U = −∫ of the force.
+static enum status weigh_groups(const struct reading *from) {
+    const struct potential_grid *const grid = from->grid;
+    const size_t size = from->solution.size;
+    double *weight = from->weight + grid->pairs_known * size;
     for (size_t g = 0; g < grid->groups; g++) {
         const struct potential_group *const group = &grid->group[g];
         const struct bonded_grid *const own = &group->own;
         const double unit =
             own->unknown->order < BONDED_KINDS ? mf_bonded_kinds[own->unknown->order]->scale : 1;
-        const double least = unit * grid->r[group->point + most_likely(own)];
+        const double *const q = grid->r + group->point + own->below;
         const struct force_curve *curve;
-        TRY(find_group(problem, own->unknown, &curve));
-        for (size_t k = 0; k < own->known; k++) {
-            const size_t point = group->point + own->below + k;
-            phi[point] = integrate(from, curve, unit * grid->r[point], least, &error[point]);
-        }
+        TRY(find_group(from->problem, own->unknown, &curve));
+        for (size_t k = 0; k < own->known; k++)
+            mf_force_solution_integral(&from->solution, curve, unit * q[k], unit * q[0],
+                                       weight + k * size);
+        take_mean_off(own, size, weight, from->mean);
+        weight += own->known * size;
     }
     return STATUS_OK;
 }
 
+/// f has no slope, and Φ has it all: forces tell of the two together.
+static void take_slope_off(const struct reading *from) {
+    const struct potential_grid *const grid = from->grid;
+    const size_t size = from->solution.size;
+    double *const slope = from->mean;
+    memset(slope, 0, size * sizeof *slope);
+    for (size_t a = 0; a < grid->known; a++)
+        for (size_t k = 0; k < size; k++)
+            slope[k] += grid->shared.weight[a] * from->weight[a * size + k];
+    for (size_t a = 0; a < grid->known; a++)
+        for (size_t k = 0; k < size; k++)
+            from->weight[a * size + k] -= grid->shared.change[a] * slope[k];
+}
+
+/// A known value, its standard error by the noise of the forces, and that of straight lines between
+/// nodes, of which the difference is about three.
+static double integrate(const struct reading *from, size_t a, double *error, double *line) {
+    const struct force_solution *const s = &from->solution;
+    const double *const weight = from->weight + a * s->size;
+    double value = 0, variance = 0, coarse = 0;
+    for (size_t k = 0; k < s->size; k++) {
+        double sum = 0;
+        for (size_t l = 0; weight[k] != 0 && l < s->size; l++)
+            sum += s->covariance[k * s->size + l] * weight[l];
+        value += weight[k] * s->value[k];
+        coarse += weight[k] * s->coarse[k];
+        variance += weight[k] * sum;
+    }
+    *error = sqrt(fmax(0, variance));
+    *line = (coarse - value) / 2;
+    return value;
+}
+
+/// Root mean square of what straight lines are off around a value of a block: it is 0 at some.
+static double find_line_error(const double *line, size_t begin, size_t end, size_t a) {
+    enum { BESIDE = 2 };
+    const size_t first = a > begin + BESIDE ? a - BESIDE : begin;
+    const size_t last = a + BESIDE < end ? a + BESIDE : end - 1;
+    double squares = 0;
+    for (size_t b = first; b <= last; b++)
+        squares += line[b] * line[b];
+    return sqrt(squares / (double)(last - first + 1));
+}
+
+/// The known values, less what is known of those of pairs.
+static enum status read_values(const struct reading *from, double *phi, double *error) {
+    const struct potential_grid *const grid = from->grid;
+    OWNED double *line = NULL;
+    TRY_ARRAY(line, grid->known);
+    for (size_t a = 0; a < grid->known; a++) {
+        const size_t point = grid->known_point[a];
+        const struct curve *const known =
+            a < grid->pairs_known
+                ? inverse_law_curve(&grid->beside, (int)(point / (grid->bins + 1)))
+                : NULL;
+        phi[point] = integrate(from, a, &error[point], &line[a]);
+        phi[point] -= known ? mf_curve_value(known, grid->r[point]) : 0;
+    }
+    for (size_t block = 0, first = 0; block < grid->blocks; first += grid->known_of[block++])
+        for (size_t a = first; a < first + grid->known_of[block]; a++)
+            error[grid->known_point[a]] =
+                hypot(error[grid->known_point[a]],
+                      find_line_error(line, first, first + grid->known_of[block], a));
+    return STATUS_OK;
+}
+
 /// A pressure that is a target is met.
-static enum status meet_pressure(const struct inverse_problem *problem,
-                                 struct force_solution *solution) {
-    const struct target *const target = &problem->targets.target[TARGET_PRESSURE];
-    const struct simulation_setup *const scene = &problem->scene;
+static enum status meet_pressure(struct reading *from) {
+    const struct target *const target = &from->problem->targets.target[TARGET_PRESSURE];
+    const struct simulation_setup *const scene = &from->problem->scene;
     const double ideal = (double)mf_composition_particles(&scene->composition) *
                          scene->temperature / mf_box_volume(&scene->box);
     if (target->count == 0)
         return STATUS_OK;
-    return mf_force_solution_meet(solution, problem->forces, target->value[0] - ideal,
+    return mf_force_solution_meet(&from->solution, from->equations, target->value[0] - ideal,
                                   target->error ? target->error[0] : 0);
+}
+
+static int count_densities(const struct inverse_problem *problem) {
+    int found = 0;
+    for (size_t g = 0; g < problem->bonded; g++)
+        found += problem->group[g].order == INVERSE_LOCAL_DENSITY;
+    return found;
+}
+
+/// Without the forces of a density that is not looked for.
+static void choose_curves(const struct inverse_problem *problem, struct force_curve *curve,
+                          struct force_equations *equations) {
+    *equations = *problem->forces;
+    equations->curve = curve;
+    for (size_t n = 0; n < equations->curves; n++) {
+        curve[n] = problem->forces->curve[n];
+        curve[n].left_out = curve[n].order == FORCES_OF_DENSITY && count_densities(problem) == 0;
+    }
+}
+
+static enum status weigh(struct reading *from) {
+    const size_t size = from->solution.size;
+    TRY_ARRAY(from->weight, from->grid->known * size);
+    TRY_ARRAY(from->mean, size);
+    TRY(weigh_pairs(from));
+    TRY(weigh_groups(from));
+    if (from->grid->shared.change)
+        take_slope_off(from);
+    return STATUS_OK;
+}
+
+static enum status find(struct reading *from, double *phi, double *error,
+                        struct force_potentials *found) {
+    const struct potential_grid *const grid = from->grid;
+    struct force_solution *const solution = &from->solution;
+    OWNED double *unused = NULL;
+    if (error == NULL)
+        TRY_ARRAY(unused, grid->points);
+    TRY(mf_force_solve(from->equations, from->problem->scene.temperature, solution));
+    TRY(meet_pressure(from));
+    TRY(weigh(from));
+    TRY(read_values(from, phi, error ? error : unused));
+    mf_potential_grid_complete(grid, phi);
+    for (size_t g = 0; error && g < grid->groups; g++)
+        mf_potential_grid_close(grid, g, error);
+    *found = (struct force_potentials){.explained = solution->explained,
+                                       .directions = solution->directions};
+    for (size_t k = 0; k < solution->size; k++)
+        found->unknowns += solution->known[k];
+    return STATUS_OK;
 }
 
 enum status mf_force_matching_find(const struct inverse_problem *problem,
                                    const struct potential_grid *grid, double *phi, double *error,
                                    struct force_potentials *found) {
-    CLEARED_BY(mf_force_solution_clear) struct force_solution solution = {0};
-    OWNED double *weight = NULL, *unused = NULL;
-    if (error == NULL)
-        TRY_ARRAY(unused, grid->points);
-    TRY_ARRAY(weight, problem->forces->size);
-    TRY(mf_force_solve(problem->forces, problem->scene.temperature, &solution));
-    TRY(meet_pressure(problem, &solution));
-    const struct reading from = {problem->forces, &solution, weight};
-    TRY(read_pairs(problem, grid, &from, phi, error ? error : unused));
-    TRY(read_groups(problem, grid, &from, phi, error ? error : unused));
-    mf_potential_grid_complete(grid, phi);
-    for (size_t g = 0; error && g < grid->groups; g++)
-        mf_potential_grid_close(grid, g, error);
-    *found = (struct force_potentials){.explained = solution.explained,
-                                       .directions = solution.directions};
-    for (size_t k = 0; k < solution.size; k++)
-        found->unknowns += solution.known[k];
-    return STATUS_OK;
+    OWNED struct force_curve *curve = NULL;
+    struct force_equations equations;
+    struct reading from = {.problem = problem, .grid = grid, .equations = &equations};
+    TRY_ARRAY(curve, problem->forces->curves);
+    choose_curves(problem, curve, &equations);
+    const enum status status = find(&from, phi, error, found);
+    mf_force_solution_clear(&from.solution);
+    mf_memory_free(from.weight);
+    mf_memory_free(from.mean);
+    return status;
 }
 
 // The method --------------------------------------------------------------------------------------
@@ -200,6 +312,17 @@ static enum status refuse_beyond(const struct inverse_problem *problem,
     return STATUS_OK;
 }
 
+/// Their forces would count as those of pairs.
+static enum status refuse_known_densities(const struct inverse_problem *problem) {
+    const struct many_body *const many_body =
+        mf_many_body_find(problem->scene.interaction, problem->scene.interactions);
+    if (many_body == NULL || many_body->terms == count_densities(problem))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "scene.many_body: the forces of a local density whose energy is known "
+                          "are not taken off those of the trajectory: leave its \"energy\" out");
+}
+
 static enum status create(void *memory, const struct inverse_method *method,
                           const struct inverse_problem *problem, const void *parameters) {
     struct force_matching *const state = memory;
@@ -209,6 +332,7 @@ static enum status create(void *memory, const struct inverse_method *method,
                               "method.name: \"%s\" needs the forces of a trajectory: \"mesofit "
                               "measure --forces R\" keeps them in the folder that \"target\" names",
                               method->name);
+    TRY(refuse_known_densities(problem));
     state->problem = problem;
     TRY(mf_potential_grid_init(&state->grid, problem));
     TRY(refuse_beyond(problem, &state->grid));

@@ -35,7 +35,12 @@ static double find_virial(const struct force_equations *equations, const double 
     return value / (double)equations->frames;
 }
 
-/// C w, w being that of pairs alone: a bond would change its length, and leave the pressure.
+/// Whether a curve makes up for the pressure: a bond would change its length, and leave it.
+static bool is_free(const struct force_curve *curve) {
+    return curve->order == FORCES_OF_PAIRS || curve->order == FORCES_OF_DENSITY;
+}
+
+/// C w, w being that of free curves alone.
 static void find_along(const struct force_solution *solution,
                        const struct force_equations *equations, double *along) {
     const size_t size = solution->size;
@@ -44,7 +49,7 @@ static void find_along(const struct force_solution *solution,
         for (size_t l = curve->first; l < curve->first + curve->nodes; l++) {
             const double w =
                 force_work_total(equations, equations->virial, l, size) / (double)equations->frames;
-            for (size_t k = 0; k < size && curve->order == FORCES_OF_PAIRS; k++)
+            for (size_t k = 0; k < size && is_free(curve); k++)
                 along[k] += solution->covariance[k * size + l] * w;
         }
     }
@@ -63,7 +68,7 @@ enum status mf_force_solution_meet(struct force_solution *solution,
     for (size_t n = 0; n < equations->curves; n++)
         for (size_t k = 0; k < equations->curve[n].nodes; k++) {
             const size_t at = equations->curve[n].first + k;
-            step[at] = equations->curve[n].order == FORCES_OF_PAIRS ? along[at] : 0;
+            step[at] = is_free(&equations->curve[n]) ? along[at] : 0;
             open += step[at] * force_work_total(equations, equations->virial, at, size) /
                     (double)equations->frames;
         }

@@ -29,7 +29,7 @@ static void add_row(struct force_work *w, const size_t *column, const double *nu
 static void add_differences(struct force_work *w, size_t n) {
     const struct force_curve *const curve = &w->equations->curve[n];
     const size_t begin = w->begin[n], count = w->begin[n + 1] - begin;
-    const bool circle = force_work_is_circle(curve);
+    const bool circle = force_curve_is_circle(curve);
     const double length =
         curve->order == FORCES_OF_PAIRS ? mf_imc_smooth_length : bend * curve->width;
     for (size_t k = circle ? 0 : 1; count >= 3 && k + (circle ? 0 : 1) < count; k++) {
@@ -58,13 +58,13 @@ void mf_force_prior_fill(struct force_work *w) {
     gsl_matrix_set_zero(w->prior);
     for (size_t n = 0; n < w->equations->curves; n++) {
         add_differences(w, n);
-        if (force_work_is_circle(&w->equations->curve[n]))
+        if (force_curve_is_circle(&w->equations->curve[n]))
             close_circle(w, n);
     }
 }
 
 double mf_force_prior_rank(const struct force_work *w, size_t n) {
     const size_t count = w->begin[n + 1] - w->begin[n];
-    const double less = force_work_is_circle(&w->equations->curve[n]) ? 1 : 2;
+    const double less = force_curve_is_circle(&w->equations->curve[n]) ? 1 : 2;
     return count >= 3 ? (double)count - less : 0;
 }

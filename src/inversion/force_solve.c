@@ -31,14 +31,15 @@ static void work_clear(struct force_work *w) {
 
 // The equations -----------------------------------------------------------------------------------
 
-/// The nodes of a curve from the first to the last that have been seen; all of a circle.
+/// The nodes of a curve from the first to the last that have been seen; all of a circle; none if it
+/// is left out.
 static void find_known(struct force_work *w, const struct force_curve *curve) {
-    size_t begin = curve->first, end = curve->first + curve->nodes;
+    size_t begin = curve->first, end = curve->left_out ? begin : curve->first + curve->nodes;
     while (begin < end && !(force_work_gram(w->equations, begin, begin) > 0))
         begin++;
     while (end > begin && !(force_work_gram(w->equations, end - 1, end - 1) > 0))
         end--;
-    if (begin < end && force_work_is_circle(curve)) {
+    if (begin < end && force_curve_is_circle(curve)) {
         begin = curve->first;
         end = begin + curve->nodes;
     }
@@ -331,7 +332,7 @@ void mf_force_solution_clear(struct force_solution *solution) {
 /// Add `sign` times the weights of ∫ of the force from the first known node to q.
 static void add_integral(const struct force_solution *solution, const struct force_curve *curve,
                          double q, double sign, double *weight) {
-    const bool circle = force_work_is_circle(curve);
+    const bool circle = force_curve_is_circle(curve);
     const double h = sign * curve->width;
     size_t begin = 0, last = curve->nodes - 1;
     while (begin < last && !solution->known[curve->first + begin])

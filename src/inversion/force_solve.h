@@ -33,9 +33,9 @@ enum status mf_force_solve(const struct force_equations *equations, double tempe
 void mf_force_solution_clear(struct force_solution *solution);
 
 /// One more equation, that of the pressure: ⟨w⟩·c is `virial`, that is P* − ρ k_B T. c of pairs
-/// moves along what its covariance knows least, until it is met: what is left of the forces being
-/// the motion of atoms, a liquid of others than pairs has another pressure by far more than its
-/// noise. The noise of ⟨w⟩ and the error go into the covariance. Fails: NO_MEMORY. Tested:
+/// and densities moves along what its covariance knows least, until it is met: what is left of the
+/// forces being the motion of atoms, a liquid of others than pairs has another pressure by far more
+/// than its noise. The noise of ⟨w⟩ and the error go into the covariance. Fails: NO_MEMORY. Tested:
 /// test_force_solve, cli/test_force_matching.
 enum status mf_force_solution_meet(struct force_solution *solution,
                                    const struct force_equations *equations, double virial,

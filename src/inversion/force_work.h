@@ -44,10 +44,6 @@ static inline bool force_work_is_determined(const struct force_work *w, size_t k
     return gsl_vector_get(w->values, k) > 1e-11 * gsl_vector_get(w->values, 0);
 }
 
-static inline bool force_work_is_circle(const struct force_curve *curve) {
-    return curve->order != FORCES_OF_PAIRS && mf_bonded_kinds[curve->order]->periodic;
-}
-
 /// Variances of b of the whole along eigenvectors, by those of the whole blocks, with the forces
 /// that are in x. Fails: NO_MEMORY.
 enum status mf_force_noise_find(struct force_work *w) MUST_USE;

@@ -79,6 +79,20 @@ static void add(const struct work *work, size_t bead, const struct force_curve *
     work->forces->virial[next] += share * virial;
 }
 
+/// The force between two beads of the energies of the densities around them.
+static void add_density(const struct work *work, size_t i, size_t j, double square,
+                        const double way[3], double sign) {
+    const struct frame_forces_plan *const plan = work->plan;
+    const struct force_curve *const curve =
+        &plan->equations.curve[curve_of_group(plan, FORCES_OF_DENSITY, 0)];
+    const double stress = sign * weighted_density_stress(plan->weight, square);
+    for (int own = 0; stress != 0 && own < 2; own++) {
+        const double density = work->forces->density[own ? i : j];
+        add(work, i, curve, density, way, -stress / square, 0.5 * stress);
+        add(work, j, curve, density, way, stress / square, 0.5 * stress);
+    }
+}
+
 /// A pair of beads, or what takes it away again.
 static void add_pair(const struct work *work, const struct cell_pairs_batch *batch, size_t k,
                      size_t i, size_t j, double sign) {
@@ -93,6 +107,8 @@ static void add_pair(const struct work *work, const struct cell_pairs_batch *bat
     const struct force_curve *const curve = &work->plan->equations.curve[curve_of_pair(pair)];
     add(work, i, curve, r, way, -sign / r, 0.5 * sign * r);
     add(work, j, curve, r, way, sign / r, 0.5 * sign * r);
+    if (work->plan->weight)
+        add_density(work, i, j, square, way, sign);
 }
 
 static bool is_looked_at(const struct work *work, size_t bead) {
@@ -243,7 +259,8 @@ static void sum_up(struct frame_forces *forces, const struct frame_forces_plan *
 
 enum status mf_frame_forces_find(struct frame_forces *forces, const struct frame_forces_plan *plan,
                                  const struct box_vectors *box,
-                                 const struct trajectory_frame *beads, int32_t *const place[3]) {
+                                 const struct trajectory_frame *beads, int32_t *const place[3],
+                                 const double *density) {
     const size_t size = plan->equations.size, count = beads_of(plan);
     struct work work = {forces, plan, plan->cutoff * plan->cutoff};
     struct terms terms = {&work, place};
@@ -253,6 +270,7 @@ enum status mf_frame_forces_find(struct frame_forces *forces, const struct frame
     memset(forces->product, 0, size * sizeof(double));
     memset(forces->virial, 0, size * sizeof(double));
     forces->square = 0;
+    forces->density = density;
     for (forces->begin = 0; forces->begin < count; forces->begin = forces->end) {
         const size_t end = forces->begin + beads_at_once(plan);
         forces->end = end < count ? end : count;
@@ -270,6 +288,11 @@ enum status mf_frame_forces_find(struct frame_forces *forces, const struct frame
 }
 
 // Beginning ---------------------------------------------------------------------------------------
+
+/// Nodes go beyond what a frame has by this much of its range, and of its largest value at least.
+static const double beyond = 0.5, least_beyond = 0.1;
+
+enum { NODES = 41 };
 
 /// Where the terms of the groups are in a frame.
 struct ranges {
@@ -289,11 +312,10 @@ static void stretch_range(void *context, int order, int group, const size_t *bea
 /// Nodes from below the least to above the largest value of a frame; all around of a circle.
 static struct force_curve curve_of_terms(const struct ranges *ranges, int order, int group,
                                          const char *name) {
-    enum { NODES = 41, AROUND = 60 };
-    static const double beyond = 0.5, least = 0.1;
+    enum { AROUND = 60 };
     const struct bonded_kind *const kind = mf_bonded_kinds[order];
     const double low = ranges->low[order][group], high = ranges->high[order][group];
-    const double more = fmax(beyond * (high - low), least * fabs(high));
+    const double more = fmax(beyond * (high - low), least_beyond * fabs(high));
     const double begin = fmax(low - more, kind->scale * kind->low);
     const double end = fmin(high + more, kind->is_length ? INFINITY : kind->scale * kind->high);
     struct force_curve curve = {.order = order,
@@ -328,6 +350,26 @@ static enum status add_groups(const struct frame_forces_plan *plan, const struct
     return status;
 }
 
+/// Nodes from below the least to above the largest density of a frame.
+static struct force_curve curve_of_density(const struct frame_forces_plan *plan,
+                                           const double *density) {
+    const struct weighted_density_settings *const weight = plan->weight;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t k = 0; k < beads_of(plan); k++) {
+        low = fmin(low, density[k]);
+        high = fmax(high, density[k]);
+    }
+    const double more = fmax(beyond * (high - low), least_beyond * fmax(high, 1));
+    struct force_curve curve = {.order = FORCES_OF_DENSITY,
+                                .inner_cutoff = weight->inner_cutoff,
+                                .cutoff = weight->cutoff,
+                                .low = fmax(0, low - more),
+                                .nodes = NODES};
+    curve.width = (high + more - curve.low) / (NODES - 1);
+    snprintf(curve.name, sizeof curve.name, "%.10g,%.10g", weight->inner_cutoff, weight->cutoff);
+    return curve;
+}
+
 /// Nodes of a pair type where all have so many.
 static size_t nodes_of_pairs(const struct frame_forces_plan *plan, size_t others) {
     const double pairs = (double)mf_composition_pairs(&plan->pairs->composition);
@@ -360,7 +402,8 @@ static enum status check_forces(const struct frame_forces_plan *plan,
 }
 
 enum status mf_frame_forces_begin(struct frame_forces_plan *plan, const struct box_vectors *box,
-                                  const struct trajectory_frame *beads, int32_t *const place[3]) {
+                                  const struct trajectory_frame *beads, int32_t *const place[3],
+                                  const double *density) {
     enum { FEWEST = 8 };
     const struct composition *const composition = &plan->pairs->composition;
     OWNED struct force_curve *curve = NULL;
@@ -368,6 +411,8 @@ enum status mf_frame_forces_begin(struct frame_forces_plan *plan, const struct b
     TRY(check_forces(plan, beads));
     TRY_ARRAY(curve, FORCES_MAX_CURVES);
     TRY(add_groups(plan, box, place, curve, &curves));
+    if (plan->weight)
+        curve[curves++] = curve_of_density(plan, density);
     for (size_t n = 0; n < curves; n++)
         others += curve[n].nodes;
     const size_t nodes = nodes_of_pairs(plan, others);
@@ -378,8 +423,11 @@ enum status mf_frame_forces_begin(struct frame_forces_plan *plan, const struct b
                               curves, FORCES_MAX_NODES);
     for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
         struct force_curve *const own = &curve[pair];
-        *own = (struct force_curve){
-            FORCES_OF_PAIRS, pair, "-", 0, plan->cutoff / (double)(nodes - 1), 0, nodes};
+        *own = (struct force_curve){.order = FORCES_OF_PAIRS,
+                                    .number = pair,
+                                    .name = "-",
+                                    .width = plan->cutoff / (double)(nodes - 1),
+                                    .nodes = nodes};
         if (composition_is_mixed(composition))
             mf_composition_pair_name(composition, pair, own->name);
     }

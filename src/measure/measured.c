@@ -289,7 +289,7 @@ static enum status find_pairs(const struct measured *measured, struct measured_s
     return STATUS_OK;
 }
 
-static enum status find_weighted(const struct measured *measured, struct measured_slot *slot) {
+enum status mf_measured_weigh(const struct measured *measured, struct measured_slot *slot) {
     const struct weighted_density_settings *const settings = &measured->plan.weighted;
     if (settings->cutoff == 0)
         return STATUS_OK;
@@ -313,7 +313,7 @@ static enum status look_at(void *context, size_t task, void *result) {
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->pairs.range,
                                  "the range of g(r)"));
     TRY(mf_frame_box_places(&slot->box, &slot->beads, slot->place));
-    TRY(find_weighted(measured, slot));
+    TRY(mf_measured_weigh(measured, slot));
     TRY(mf_measured_forces_look(measured, slot));
     return find_pairs(measured, slot);
 }

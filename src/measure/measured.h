@@ -111,6 +111,10 @@ double mf_measured_mean(const struct sample_series *series, double *error);
 /// Cube of the mean volume.
 struct box mf_measured_box(const struct measured *measured);
 
+/// Find the weighted densities of a frame of beads with its places, if there is a weight, by any
+/// thread. Fails: BAD_INPUT if the box is too small; NO_MEMORY.
+enum status mf_measured_weigh(const struct measured *measured, struct measured_slot *slot) MUST_USE;
+
 // The normal equations of force matching. Nothing is done where they are not asked for; frames
 // without forces are passed over.
 

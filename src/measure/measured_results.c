@@ -63,17 +63,30 @@ static enum status fail_without(const char *file) {
                           file);
 }
 
+/// The force of a density is one between pairs, which are looked at as far as theirs.
+static enum status choose_weight(const struct measured *measured, struct frame_forces_plan *plan) {
+    const struct weighted_density_settings *const weight = &measured->plan.weighted;
+    if (weight->cutoff > plan->cutoff)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "--forces %g: they must reach as far as --weighted-density, %g nm",
+                              plan->cutoff, weight->cutoff);
+    plan->weight = weight->cutoff > 0 ? weight : NULL;
+    return STATUS_OK;
+}
+
 static enum status begin(struct measured *measured, const struct trajectory_frame *frame) {
     struct measured_slot *const slot = measured->slot;
     struct frame_forces_plan *const plan = &measured->forces;
     plan->cutoff = measured->plan.force_cutoff;
+    TRY(choose_weight(measured, plan));
     plan->pairs = &measured->pairs;
     plan->molecules = &measured->molecules;
     TRY(mf_mapping_apply(measured->mapping, frame, &slot->beads));
     TRY(mf_frame_box_find(&slot->box, &slot->beads));
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, plan->cutoff, "the range of --forces"));
     TRY(mf_frame_box_places(&slot->box, &slot->beads, slot->place));
-    return mf_frame_forces_begin(plan, &slot->box, &slot->beads, slot->place);
+    TRY(mf_measured_weigh(measured, slot));
+    return mf_frame_forces_begin(plan, &slot->box, &slot->beads, slot->place, slot->weighted);
 }
 
 enum status mf_measured_forces_begin(struct measured *measured,
@@ -96,7 +109,7 @@ enum status mf_measured_forces_look(const struct measured *measured, struct meas
     TRY(mf_frame_box_check_range(&slot->box, &slot->beads, measured->forces.cutoff,
                                  "the range of --forces"));
     TRY(mf_frame_forces_find(&slot->forces, &measured->forces, &slot->box, &slot->beads,
-                             slot->place));
+                             slot->place, slot->weighted));
     if (slot->forces.square > 0 && isfinite(slot->forces.square))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: %s", slot->beads.file,

@@ -11,10 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool is_circle(const struct force_curve *curve) {
-    return curve->order != FORCES_OF_PAIRS && mf_bonded_kinds[curve->order]->periodic;
-}
-
 enum status mf_force_equations_init(struct force_equations *equations,
                                     const struct force_curve *curve, size_t curves) {
     enum status status = STATUS_OK;
@@ -46,7 +42,7 @@ bool mf_force_equations_find(const struct force_curve *curve, double q, size_t *
                              double *share) {
     double at = (q - curve->low) / curve->width;
     const double last = (double)(curve->nodes - 1);
-    const bool circle = is_circle(curve);
+    const bool circle = force_curve_is_circle(curve);
     if (curve->order == FORCES_OF_PAIRS && at > last)
         return false;
     if (circle)
@@ -78,15 +74,21 @@ void mf_force_equations_add(struct force_equations *equations, const double *gra
     equations->frames++;
 }
 
+/// Whether nodes are at lengths.
+static bool is_of_length(const struct force_curve *curve) {
+    return curve->order == FORCES_OF_PAIRS ||
+           (curve->order != FORCES_OF_DENSITY && mf_bonded_kinds[curve->order]->is_length);
+}
+
 void mf_force_equations_scale(struct force_equations *equations, double length, double energy) {
     double factor[FORCES_MAX_NODES] = {0};
     for (size_t n = 0; n < equations->curves; n++) {
         struct force_curve *const curve = &equations->curve[n];
-        const bool is_length =
-            curve->order == FORCES_OF_PAIRS || mf_bonded_kinds[curve->order]->is_length;
-        const double unit = is_length ? length : 1;
+        const double unit = is_of_length(curve) ? length : 1;
         curve->low /= unit;
         curve->width /= unit;
+        curve->inner_cutoff /= length;
+        curve->cutoff /= length;
         for (size_t k = 0; k < curve->nodes; k++)
             factor[curve->first + k] = energy / unit;
     }
@@ -106,10 +108,13 @@ void mf_force_equations_scale(struct force_equations *equations, double length, 
 //   # frames 1000 64 beads 864 square 1.2e9
 //   # curve pairs A-B 13 0.1 0.01
 //   # curve bond backbone 40 0.2 0.005
+//   # curve density 0.3,0.7 41 0 0.5
 // the frames of all and of a block; the nodes of a curve, the first, and between two [nm, rad].
 
 static const char *kind_name(int order) {
-    return order == FORCES_OF_PAIRS ? "pairs" : mf_bonded_kinds[order]->name;
+    return order == FORCES_OF_PAIRS     ? "pairs"
+           : order == FORCES_OF_DENSITY ? "density"
+                                        : mf_bonded_kinds[order]->name;
 }
 
 static enum status note(struct bytes *text, const char *format, ...)
@@ -193,11 +198,20 @@ done:
 
 // Reading -----------------------------------------------------------------------------------------
 
-static int find_order(const char *kind) {
-    for (int order = FORCES_OF_PAIRS; order < BONDED_KINDS; order++)
-        if (strcmp(kind, kind_name(order)) == 0)
-            return order;
-    return BONDED_KINDS;
+/// False if there is no such kind.
+static bool find_order(const char *kind, int *order) {
+    for (*order = FORCES_OF_PAIRS; *order <= FORCES_OF_DENSITY; ++*order)
+        if (strcmp(kind, kind_name(*order)) == 0)
+            return true;
+    return false;
+}
+
+/// The weight that its name tells.
+static bool read_weight(struct force_curve *curve) {
+    return curve->order != FORCES_OF_DENSITY ||
+           (sscanf(curve->name, "%lf,%lf", &curve->inner_cutoff, &curve->cutoff) == 2 &&
+            curve->inner_cutoff >= 0 && curve->cutoff > curve->inner_cutoff &&
+            isfinite(curve->cutoff));
 }
 
 /// A line of the comments as "curve pairs A-B 13 0.1 0.01"; false if it is another.
@@ -207,9 +221,9 @@ static bool read_curve(const char *line, struct force_curve *curve) {
     if (sscanf(line, "# curve %63s %63s %zu %lf %lf", kind, curve->name, &curve->nodes, &curve->low,
                &curve->width) != 5)
         return false;
-    curve->order = find_order(kind);
-    return curve->order < BONDED_KINDS && curve->nodes >= 2 && curve->nodes <= FORCES_MAX_NODES &&
-           curve->width > 0 && isfinite(curve->low) && isfinite(curve->width);
+    return find_order(kind, &curve->order) && read_weight(curve) && curve->nodes >= 2 &&
+           curve->nodes <= FORCES_MAX_NODES && curve->width > 0 && isfinite(curve->low) &&
+           isfinite(curve->width);
 }
 
 static enum status fail(const char *file, const char *what) {

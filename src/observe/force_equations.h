@@ -2,8 +2,10 @@
 /// @file The normal equations of force matching: F. Ercolessi and J. B. Adams, Europhys. Lett. 26,
 /// 583 (1994); S. Izvekov and G. A. Voth, J. Phys. Chem. B 109, 2469 (2005).
 ///
-/// The force on a bead is written as Σ_k c_k X_k, with −dΦ/dr of a pair, or −dU/dq of a bond, an
-/// angle or a dihedral, a straight line between nodes, at which it is c_k. Over all beads and
+/// The force on a bead is written as Σ_k c_k X_k, with −dΦ/dr of a pair, −dU/dq of a bond, an
+/// angle or a dihedral, or −df/dρ of the energy of a local density (forces/many_body.h), whose
+/// force between two beads is −[f'(ρ_i) + f'(ρ_j)] w'(r), a straight line between nodes, at which
+/// it is c_k. Over all beads and
 /// frames the squares of what is left of the forces are least where G c = b, with
 /// G_kl = Σ X_k·X_l and b_k = Σ X_k·F. Their pressure is ρ k_B T + ⟨w⟩·c, w_k being the virial of
 /// X_k by d V. Neighbouring frames are joined to blocks, twice as many in each whenever all blocks
@@ -18,8 +20,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/// Of pairs, beside the orders of bonded terms.
-enum { FORCES_OF_PAIRS = -1 };
+/// Of pairs and of a local density, beside the orders of bonded terms.
+enum { FORCES_OF_PAIRS = -1, FORCES_OF_DENSITY = BONDED_KINDS };
 
 enum {
     FORCES_MAX_CURVES = 128,
@@ -30,12 +32,21 @@ enum {
 
 /// The force of a pair type or group: nodes at equal distances.
 struct force_curve {
-    int order;                   ///< FORCES_OF_PAIRS, or one of BONDED_LIST
+    int order;                   ///< FORCES_OF_PAIRS, FORCES_OF_DENSITY or one of BONDED_LIST
     int number;                  ///< pair type, or group of the order
-    char name[FORCES_NAME_SIZE]; ///< of that; "-": pairs of beads that are all alike
-    double low, width;           ///< the first node, and between two [λ] or [rad]
+    char name[FORCES_NAME_SIZE]; ///< of that; "-": pairs of beads that are all alike; of a density
+                                 ///< r_0 and r_c of its weight in nm, "0.3,0.7"
+    double inner_cutoff, cutoff; ///< of a density [λ]
+    double low, width;           ///< the first node, and between two [λ], [rad], of a density 1
     size_t first, nodes;         ///< among all unknowns; a circle's last node is before its first
+    bool left_out;               ///< its forces are none: of a density that is not asked for
 };
+
+/// Whether its last node is before its first.
+static inline bool force_curve_is_circle(const struct force_curve *curve) {
+    return curve->order >= 0 && curve->order < BONDED_KINDS &&
+           mf_bonded_kinds[curve->order]->periodic;
+}
 
 struct force_equations {
     size_t curves, size; ///< size: of all nodes
@@ -45,7 +56,7 @@ struct force_equations {
     double square;       ///< Σ F² of all frames
     double *gram;        ///< shape [FORCES_BLOCKS, size (size + 1)/2]: k (k + 1)/2 + l, l ≤ k
     double *product;     ///< b, shape [FORCES_BLOCKS, size]
-    double *virial;      ///< w [1/λ²; of angles 1/λ³], shape [FORCES_BLOCKS, size]
+    double *virial; ///< w [1/λ²; of angles and densities 1/λ³], shape [FORCES_BLOCKS, size]
 };
 
 /// Entries of G.

@@ -49,6 +49,20 @@ static const char liquid[] =
     "\"measure\": {\"equilibration\": 400, \"samples\": 60, \"every\": 20},\n"
     "\"snapshots\": {\"every\": 20, \"formats\": [\"lammps-dump\"]}}\n";
 
+/// Chains with an energy of local densities, beside which bonded beads do not count.
+static const char crowd[] =
+    "{\"seed\": 5, \"box\": [4, 4, 4], \"time_step\": 0.01,\n"
+    "\"bonds\": {\"backbone\": {\"law\": \"harmonic\", \"k\": 60, \"length\": 0.6}},\n"
+    "\"molecules\": {\"chain\": {\"count\": 65, \"chain\": {\"type\": \"A\", \"length\": 3, "
+    "\"bond\": \"backbone\"}}},\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 18},\n"
+    "\"many_body\": {\"crowd\": {\"weight\": {\"law\": \"sanyal-shell\", \"inner_cutoff\": 0.5,\n"
+    "  \"cutoff\": 1.2}, \"energy\": {\"law\": \"polynomial\", \"origin\": 6, \"c1\": -0.6,\n"
+    "  \"c2\": 0.15, \"c3\": -0.01}}},\n"
+    "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+    "\"measure\": {\"equilibration\": 500, \"samples\": 80, \"every\": 25},\n"
+    "\"snapshots\": {\"every\": 25, \"formats\": [\"lammps-dump\"]}}\n";
+
 static int enter(void **state) {
     if (small_inputs_enter_without_gnuplot(state) != 0)
         return -1;
@@ -58,26 +72,46 @@ static int enter(void **state) {
     small_inputs_write(*state, "liquid.json", liquid, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "liquid.json", "-o", "liquid");
     run_program_assert_code(&result, 0);
+    small_inputs_write(*state, "crowd.json", crowd, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "crowd.json", "-o", "crowd");
+    run_program_assert_code(&result, 0);
     return 0;
 }
 
-/// target.json with the method before its first key, as target/run.json.
-static void write_run(const char *from, const char *to) {
-    static char text[1 << 14], all[1 << 15];
-    FILE *const file = fopen("target/target.json", "r");
+static char contents[1 << 14];
+
+static void read_text(const char *name) {
+    FILE *const file = fopen(name, "r");
     assert_non_null(file);
-    const size_t length = fread(text, 1, sizeof text - 1, file);
+    contents[fread(contents, 1, sizeof contents - 1, file)] = '\0';
     fclose(file);
-    text[length] = '\0';
-    snprintf(all, sizeof all, "%s%s", method, strchr(text, '{') + 1);
-    char *const at = from ? strstr(all, from) : NULL;
+}
+
+/// Write it as target/run.json, with `to` in place of `from`, if that is not NULL.
+static void write_text(const char *all, const char *from, const char *to) {
+    const char *const at = from ? strstr(all, from) : NULL;
     FILE *const run = fopen("target/run.json", "w");
     assert_non_null(run);
+    assert_true(from == NULL || at);
     if (at)
         fprintf(run, "%.*s%s%s", (int)(at - all), all, to, at + strlen(from));
     else
         fputs(all, run);
     fclose(run);
+}
+
+/// target.json with the method before its first key.
+static void write_run(const char *from, const char *to) {
+    static char all[1 << 15];
+    read_text("target/target.json");
+    snprintf(all, sizeof all, "%s%s", method, strchr(contents, '{') + 1);
+    write_text(all, from, to);
+}
+
+/// The same of a run that there is.
+static void write_run_again(const char *from, const char *to) {
+    read_text("target/run.json");
+    write_text(contents, from, to);
 }
 
 static double soft(double r, double a) {
@@ -297,6 +331,73 @@ static void test_a_pressure_is_met(void **state) {
     assert_true(fabs(had - 200) < 0.2 * fabs(bar * pressure - 200));
 }
 
+#define MEASURE_CROWD(...)                                                                         \
+    MEASURE("crowd/snapshots/trajectory.lammpstrj", "--molecules", "crowd.json",                   \
+            "--weighted-density", "0.5,1.2", __VA_ARGS__)
+
+#define SOUGHT                                                                                     \
+    "\"many_body\": {\"crowd\": {\"weight\": {\"law\": \"sanyal-shell\", \"inner_cutoff\": 0.5, "  \
+    "\"cutoff\": 1.2}"
+
+/// The curvature of f, which no convention changes; rms of what is off where its error is known.
+static double compare_curvatures(const char *file) {
+    struct data_table table;
+    double squares = 0, count = 0;
+    assert_ok(mf_data_table_read(&table, file, 2));
+    const double width = table.values[3] - table.values[0];
+    for (size_t row = 1; row + 1 < table.rows; row++) {
+        const double *const at = table.values + row * 3;
+        if (!isfinite(at[-1]) || !isfinite(at[5]))
+            continue;
+        const double curvature = (at[-2] - 2 * at[1] + at[4]) / (width * width);
+        squares += pow(curvature - (0.3 - 0.06 * (at[0] - 6)), 2);
+        count++;
+    }
+    mf_data_table_clear(&table);
+    assert_true(count > 10);
+    return sqrt(squares / count);
+}
+
+/// f and Φ of chains come back together; pairs alone explain less, and know nothing of the density.
+static void test_an_energy_of_densities_comes_back(void **state) {
+    (void)state;
+    MEASURE_CROWD("--forces", "1.2");
+    run_program_assert_code(&result, 0);
+    write_run("\"fitted\":\t\"no\",", "");
+    write_run_again("\"scene\":\t{", "\"scene\": {" SOUGHT "}},");
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "100.0000 % of the mean square of the forces");
+    const double off = compare_curvatures("out/many_body_crowd.tsv");
+    print_message("curvature of f off by %.2g of 0.3 kJ/mol\n", off);
+    assert_true(off < 0.01);
+    write_run(NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_contains(result.err, "% of the mean square of the forces");
+    assert_true(strstr(result.err, "100.0000 %") == NULL);
+}
+
+static void test_densities_that_cannot_be_matched_are_said(void **state) {
+    (void)state;
+    MEASURE_CROWD("--forces", "1.1");
+    assert_measure_refused("--forces 1.1: they must reach as far as --weighted-density, 1.2 nm");
+    MEASURE_CROWD("--forces", "1.2");
+    write_run("\"scene\":\t{", "\"scene\": {" SOUGHT ", \"energy\": {\"law\": \"polynomial\", "
+                               "\"c2\": 0.1}}},");
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_measure_refused("scene.many_body: the forces of a local density whose energy is known");
+    MEASURE("crowd/snapshots/trajectory.lammpstrj", "--molecules", "crowd.json", "--forces", "1.2");
+    RUN_PROGRAM(&result, "measure", "crowd/snapshots/trajectory.lammpstrj", "--molecules",
+                "crowd.json", "--weighted-density", "0.5,1.2", "--static", "--temperature",
+                "120.272", "--q-range", "0", "--bins", "60", "--range", "1.2", "-o", "density");
+    write_run("\"rdf\":", "\"weighted_density\": {\"file\": \"../density/weighted_density.tsv\", "
+                          "\"inner_cutoff\": 0.5, \"cutoff\": 1.2}, \"rdf\":");
+    write_run_again("\"scene\":\t{", "\"scene\": {" SOUGHT "}},");
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_measure_refused("target.forces: it has no local density with the weight of \"crowd\": "
+                           "measure --forces and --weighted-density together");
+}
+
 static void test_forces_that_cannot_be_matched_are_said(void **state) {
     write_dump(*state, 12, "", "", "");
     measure_dump();
@@ -380,6 +481,8 @@ int main(void) {
         cmocka_unit_test(test_inversions_begin_with_forces),
         cmocka_unit_test(test_auto_goes_on_from_the_nearer_start),
         cmocka_unit_test(test_a_pressure_is_met),
+        cmocka_unit_test(test_an_energy_of_densities_comes_back),
+        cmocka_unit_test(test_densities_that_cannot_be_matched_are_said),
         cmocka_unit_test(test_forces_that_cannot_be_matched_are_said),
         cmocka_unit_test(test_forces_of_some_frames_and_atoms_are_said),
         cmocka_unit_test(test_a_fit_without_the_forces_is_refused),

@@ -87,9 +87,9 @@ static struct gas *measure(uint32_t seed, size_t frames) {
     for (size_t t = 0; t < frames; t++) {
         next_frame(gas);
         if (t == 0)
-            assert_ok(mf_frame_forces_begin(&gas->plan, &gas->box, &gas->frame, gas->place));
-        assert_ok(
-            mf_frame_forces_find(&gas->forces, &gas->plan, &gas->box, &gas->frame, gas->place));
+            assert_ok(mf_frame_forces_begin(&gas->plan, &gas->box, &gas->frame, gas->place, NULL));
+        assert_ok(mf_frame_forces_find(&gas->forces, &gas->plan, &gas->box, &gas->frame, gas->place,
+                                       NULL));
         mf_force_equations_add(&gas->plan.equations, gas->forces.gram, gas->forces.product,
                                gas->forces.virial, gas->forces.square);
     }

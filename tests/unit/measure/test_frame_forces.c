@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Normal equations of a frame against the obvious sums: pairs of a mixture in a tilted box, fewer
-// beads at a time than there are; forces that are of no use.
+// beads at a time than there are; a local density against differences of its energy; forces that
+// are of no use.
 #include "base/rng.h"
 #include "measure/frame_forces.h"
 #include "shared/is_close.h"
@@ -50,7 +51,7 @@ static struct system *make_system(const struct composition *composition, double 
     assert_ok(mf_frame_box_places(&s->box, &s->frame, s->place));
     s->plan =
         (struct frame_forces_plan){.cutoff = cutoff, .pairs = &s->pairs, .molecules = &s->none};
-    assert_ok(mf_frame_forces_begin(&s->plan, &s->box, &s->frame, s->place));
+    assert_ok(mf_frame_forces_begin(&s->plan, &s->box, &s->frame, s->place, NULL));
     return s;
 }
 
@@ -132,7 +133,7 @@ static void test_pairs_against_the_obvious_sums(void **state) {
         struct frame_forces forces = {0};
         assert_int_equal(s->plan.equations.size, 31 * (n == 0 ? 1 : 3));
         for (int again = 0; again < 2; again++)
-            assert_ok(mf_frame_forces_find(&forces, &s->plan, &s->box, &s->frame, s->place));
+            assert_ok(mf_frame_forces_find(&forces, &s->plan, &s->box, &s->frame, s->place, NULL));
         assert_sums(s, &forces, 1);
         mf_frame_forces_clear(&forces);
         clear(s);
@@ -147,9 +148,78 @@ static void test_beads_some_at_a_time(void **state) {
     struct system *const s = make_system(&many, 1.2, 400);
     struct frame_forces forces = {0};
     assert_int_equal(s->plan.equations.size, FORCES_MAX_NODES);
-    assert_ok(mf_frame_forces_find(&forces, &s->plan, &s->box, &s->frame, s->place));
+    assert_ok(mf_frame_forces_find(&forces, &s->plan, &s->box, &s->frame, s->place, NULL));
     assert_true(forces.begin == s->frame.atoms && forces.end == s->frame.atoms);
     assert_sums(s, &forces, 37);
+    mf_frame_forces_clear(&forces);
+    clear(s);
+}
+
+/// T. Sanyal and M. S. Shell, J. Chem. Phys. 145, 034109 (2016), eq. 3.
+static double weight(double r, double r0, double rc) {
+    const double x = r0 * r0 / (rc * rc), d = pow(1 - x, 3), u = r * r / (rc * rc);
+    if (r <= r0 || r >= rc)
+        return r < rc;
+    return ((1 - 3 * x) + 6 * x * u - 3 * (1 + x) * u * u + 2 * u * u * u) / d;
+}
+
+/// With f' = 3 − 0.4 ρ, which straight lines between nodes are; ρ of all beads into `density`.
+static double energy_of_densities(const struct system *s, double *density) {
+    double energy = 0;
+    for (size_t i = 0; i < s->frame.atoms; i++) {
+        density[i] = 0;
+        for (size_t j = 0; j < s->frame.atoms; j++) {
+            double way[3] = {0};
+            if (i == j)
+                continue;
+            find_way(s, i, j, way);
+            density[i] += weight(sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]), 0.6, 2);
+        }
+        energy += 3 * density[i] - 0.2 * density[i] * density[i];
+    }
+    return energy;
+}
+
+/// The forces of an energy of densities, by its differences, are those of its nodes: b = G c, and
+/// Σ F² = c·b.
+static void test_a_density_by_differences_of_its_energy(void **state) {
+    static const struct composition one = {.types = 1, .count = {60}};
+    static const struct weighted_density_settings settings = {.inner_cutoff = 0.6, .cutoff = 2};
+    const double small = 1e-4;
+    double density[60];
+    struct frame_forces forces = {0};
+    (void)state;
+    struct system *const s = make_system(&one, 2.1, 10);
+    for (size_t k = 0; k < 60; k++)
+        for (int d = 0; d < 3; d++) {
+            s->position[k][d] += small;
+            s->force[k][d] = -energy_of_densities(s, density);
+            s->position[k][d] -= 2 * small;
+            s->force[k][d] = (s->force[k][d] + energy_of_densities(s, density)) / (2 * small);
+            s->position[k][d] += small;
+        }
+    energy_of_densities(s, density);
+    mf_frame_forces_end(&s->plan);
+    s->plan.weight = &settings;
+    assert_ok(mf_frame_forces_begin(&s->plan, &s->box, &s->frame, s->place, density));
+    assert_ok(mf_frame_forces_find(&forces, &s->plan, &s->box, &s->frame, s->place, density));
+    const struct force_equations *const e = &s->plan.equations;
+    const struct force_curve *const curve = &e->curve[1];
+    assert_true(curve->order == FORCES_OF_DENSITY);
+    double sum = 0;
+    for (size_t k = 0; k < e->size; k++) {
+        double product = 0;
+        for (size_t l = curve->first; l < e->size; l++) {
+            const double q = curve->low + curve->width * (double)(l - curve->first);
+            const size_t row = k > l ? k : l, column = k > l ? l : k;
+            product -= (3 - 0.4 * q) * forces.gram[row * (row + 1) / 2 + column];
+        }
+        assert_close(product, forces.product[k], 1e-4 * (1 + fabs(product)));
+        if (k >= curve->first)
+            sum -= (3 - 0.4 * (curve->low + curve->width * (double)(k - curve->first))) *
+                   forces.product[k];
+    }
+    assert_close(sum / forces.square, 1, 1e-5);
     mf_frame_forces_clear(&forces);
     clear(s);
 }
@@ -162,13 +232,13 @@ static void test_forces_of_no_use_are_refused(void **state) {
     for (size_t k = 30; k < 60; k++)
         for (int d = 0; d < 3; d++)
             s->force[k][d] = 0;
-    assert_int_equal(mf_frame_forces_begin(&s->plan, &s->box, &s->frame, s->place),
+    assert_int_equal(mf_frame_forces_begin(&s->plan, &s->box, &s->frame, s->place, NULL),
                      STATUS_BAD_INPUT);
     assert_contains(mf_status_message(), "x: frame 0: the forces of all beads \"B\" are 0");
     for (size_t k = 0; k < 30; k++)
         for (int d = 0; d < 3; d++)
             s->force[k][d] = 0;
-    assert_int_equal(mf_frame_forces_begin(&s->plan, &s->box, &s->frame, s->place),
+    assert_int_equal(mf_frame_forces_begin(&s->plan, &s->box, &s->frame, s->place, NULL),
                      STATUS_BAD_INPUT);
     assert_contains(mf_status_message(), "x: frame 0: all forces are 0");
     free(s);
@@ -178,6 +248,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pairs_against_the_obvious_sums),
         cmocka_unit_test(test_beads_some_at_a_time),
+        cmocka_unit_test(test_a_density_by_differences_of_its_energy),
         cmocka_unit_test(test_forces_of_no_use_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
