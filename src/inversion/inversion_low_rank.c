@@ -94,16 +94,51 @@ static bool decompose(const struct inversion_basis *low_rank, struct response *r
     return true;
 }
 
-/// Part x of the step along an eigenvector of the sampled response, of an eigenvalue h above 1, of
-/// which the true response leaves least, |R x v − v|²: x = v·Rv/|Rv|². γ = m/n makes eigenvalues up
-/// to (1 + √γ)² of nothing, and h = ℓ + γℓ/(ℓ − 1) of a true ℓ, whose vector has the share c² of v.
-static double find_inverse_of_large(double h, double ratio) {
+/// A large eigenvalue ℓ of the true response.
+struct spike {
+    double value, share; ///< ℓ, and the share c² of its vector that that of the samples has
+};
+
+/// γ = m/n makes eigenvalues h of samples up to (1 + √γ)² of nothing, false, and
+/// h = ℓ + γℓ/(ℓ − 1) of a true ℓ.
+static bool find_spike(double h, double ratio, struct spike *spike) {
     const double sum = h + 1 - ratio;
     if (h <= pow(1 + sqrt(ratio), 2))
-        return 1;
-    const double large = (sum + sqrt(fmax(0, sum * sum - 4 * h))) / 2, above = large - 1;
-    const double share = (1 - ratio / (above * above)) / (1 + ratio / above);
-    return (share * large + 1 - share) / (share * large * large + 1 - share);
+        return false;
+    spike->value = (sum + sqrt(fmax(0, sum * sum - 4 * h))) / 2;
+    const double above = spike->value - 1;
+    spike->share = (1 - ratio / (above * above)) / (1 + ratio / above);
+    return true;
+}
+
+/// What of the true response R and of R² lies along each other direction, where the vectors of
+/// large eigenvalues are not quite known: Σ (ℓ − 1)(1 − c²) and Σ (ℓ² − 1)(1 − c²) by their number.
+static void find_leaks(const struct inversion_basis *low_rank, const struct response *r,
+                       double ratio, double leak[2]) {
+    double others = (double)low_rank->count;
+    leak[0] = leak[1] = 0;
+    for (size_t k = 0; k < low_rank->count; k++) {
+        struct spike spike;
+        if (!find_spike(gsl_vector_get(r->eigenvalue, k), ratio, &spike))
+            continue;
+        leak[0] += (spike.value - 1) * (1 - spike.share);
+        leak[1] += (spike.value * spike.value - 1) * (1 - spike.share);
+        others--;
+    }
+    leak[0] /= fmax(others, 1);
+    leak[1] /= fmax(others, 1);
+}
+
+/// Part x of the step along an eigenvector of the sampled response, of an eigenvalue h, of which
+/// the true response leaves least, ⟨|R x v − v|²⟩: x = ⟨v·Rv⟩/⟨|Rv|²⟩.
+static double find_part(double h, double ratio, const double leak[2]) {
+    const double small = sqrt(ratio) / (1 + sqrt(ratio)); // λ
+    struct spike spike;
+    if (find_spike(h, ratio, &spike))
+        return (spike.share * (spike.value - 1) + 1) /
+               (spike.share * (spike.value * spike.value - 1) + 1);
+    const double value = small + (1 - small) * fmin(h, 1);
+    return (value + leak[0]) / (value * value + leak[1]);
 }
 
 /// step += B (H⁻¹ − T⁻¹) Bᵀ S* u.
@@ -111,13 +146,11 @@ static void add_difference(const struct inversion_state *state, struct response 
     const struct inversion_basis *low_rank = &state->low_rank;
     const struct potential_grid *grid = &state->grid;
     const double ratio = (double)low_rank->count / low_rank->independent;
-    const double share = sqrt(ratio) / (1 + sqrt(ratio));
-    for (size_t k = 0; k < low_rank->count; k++) {
-        const double h = gsl_vector_get(r->eigenvalue, k);
-        const double inverse =
-            h > 1 ? find_inverse_of_large(h, ratio) : 1 / (share + (1 - share) * h);
-        *gsl_vector_ptr(r->along, k) *= inverse - 1;
-    }
+    double leak[2];
+    find_leaks(low_rank, r, ratio, leak);
+    for (size_t k = 0; k < low_rank->count; k++)
+        *gsl_vector_ptr(r->along, k) *=
+            find_part(gsl_vector_get(r->eigenvalue, k), ratio, leak) - 1;
     gsl_blas_dgemv(CblasNoTrans, 1, r->eigenvector, r->along, 0, r->asked);
     gsl_blas_dtrsv(CblasLower, CblasTrans, CblasNonUnit, r->ideal, r->asked);
     for (size_t a = 0; a < grid->known; a++)

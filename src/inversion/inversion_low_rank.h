@@ -31,7 +31,9 @@ bool mf_inversion_is_low_rank(const struct inversion *inversion);
 /// twice as long as the right one. Along an h above 1, as that of concentrations of a mixture, the
 /// step is the one of which the true response leaves least: J. Baik and J. W. Silverstein, J.
 /// Multivar. Anal. 97, 1382 (2006); D. L. Donoho, M. Gavish and I. M. Johnstone, Ann. Stat. 46,
-/// 1742 (2018).
+/// 1742 (2018). So it is along all others, which have a part of such an eigenvector, as few samples
+/// know it: that part is answered ℓ times. Of chains in a solvent, ℓ = 27 and 30 samples, it would
+/// be more than what the step was to take off along ℓ itself; they go half of their way.
 /// @param[in,out] step  u in the known bins, shape [points]. Fails: NO_MEMORY. Tested:
 /// test_inversion_low_rank.
 enum status mf_inversion_low_rank_respond(struct inversion_state *state, double *step) MUST_USE;

@@ -183,6 +183,56 @@ static void test_coarse_step_along_a_sampled_response_leaves_least(void **state)
     }
 }
 
+/// What the true response of a step leaves of `asked`, with so many times the part of the step that
+/// is across the vector.
+static double find_left(const struct made *made, double large, const double vector[KNOWN],
+                        const double asked[KNOWN], double times) {
+    double along = 0, left = 0;
+    for (size_t a = 0; a < KNOWN; a++)
+        along += vector[a] * made->step[CORE + a] * sqrt(made->counts[CORE + a]);
+    for (size_t a = 0; a < KNOWN; a++) {
+        const double step = made->step[CORE + a] * sqrt(made->counts[CORE + a]);
+        const double changed = along * vector[a] + times * (step - along * vector[a]);
+        left += pow((a == 0 ? large : 1) * changed - asked[a], 2);
+    }
+    return left;
+}
+
+/// Steps to anywhere: half or twice as long across the sampled vector they leave more, and of few
+/// samples of a large response all of them leave less than was asked for.
+static void test_coarse_step_across_a_sampled_response_leaves_least(void **state) {
+    (void)state;
+    static struct made made;
+    static const struct {
+        int64_t samples;
+        double large;
+    } of[] = {{12, 27}, {20, 27}, {40, 60}, {200, 10}};
+    static const double times[] = {1, 0.5, 2};
+    enum { TRIALS = 300 };
+    for (size_t n = 0; n < sizeof of / sizeof *of; n++) {
+        double left[3] = {0};
+        make(&made, 100, (double)of[n].samples, 1, 0);
+        for (uint32_t trial = 0; trial < TRIALS; trial++) {
+            double vector[KNOWN], asked[KNOWN + 2];
+            sample(&made, of[n].samples, of[n].large, trial, vector);
+            for (uint32_t k = 0; k < KNOWN; k += 4)
+                mf_rng_normal4(mf_rng_philox(6, RNG_EVALUATION, trial, 0, k), asked + k);
+            for (size_t a = 0; a < KNOWN; a++)
+                made.step[CORE + a] = asked[a] / sqrt(made.counts[CORE + a]);
+            assert_ok(mf_inversion_low_rank_respond(&made.state, made.step));
+            for (int k = 0; k < 3; k++)
+                left[k] += find_left(&made, of[n].large, vector, asked, times[k]) / TRIALS;
+        }
+        print_message(
+            "%d samples, a response of %g: %.2f of %d is left; half and twice as far %.2f "
+            "and %.2f\n",
+            (int)of[n].samples, of[n].large, left[0], KNOWN, left[1], left[2]);
+        assert_true(left[0] < left[1] && left[0] < left[2]);
+        assert_true(left[0] < KNOWN);
+        clear(&made);
+    }
+}
+
 /// Bins that are empty in the target leave coefficients that no pair sees.
 static void test_coarse_step_of_a_target_with_a_hole_is_finite(void **state) {
     (void)state;
@@ -242,6 +292,7 @@ int main(void) {
         cmocka_unit_test(test_coarse_step_of_few_samples_is_short),
         cmocka_unit_test(test_coarse_step_along_a_large_response_is_short),
         cmocka_unit_test(test_coarse_step_along_a_sampled_response_leaves_least),
+        cmocka_unit_test(test_coarse_step_across_a_sampled_response_leaves_least),
         cmocka_unit_test(test_coarse_step_of_a_target_with_a_hole_is_finite),
         cmocka_unit_test(test_coarse_step_leaves_what_the_factor_of_a_target_explains),
     };
