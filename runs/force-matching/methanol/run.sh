@@ -23,15 +23,6 @@ for stage in em npt nvt; do
 done
 "$mesofit" measure nvt.trr -s npt.gro --map map.json --forces 1.2 --range 1.2 --static --q-range 0 \
     --temperature 300 -o target --force
-for fit in force-matching pressure imc relative-entropy; do
-    method="\"name\": \"$fit\", \"particles\": 576, \"precision\": 0.006"
-    [ $fit != relative-entropy ] || method="$method, \"coefficients\": 60"
-    [ $fit = imc ] || [ $fit = relative-entropy ] || method='"name": "force-matching"'
-    pressure=
-    [ $fit != pressure ] || pressure='"pressure": {"value": 1, "error": 20}, '
-    sed "s/^{/{\"seed\": 1, \"unknowns\": {\"potential\": {}}, \"method\": {$method}, /; s/\"rdf\":/$pressure\"rdf\":/; s/\"file\":[^,]*rdf.tsv\"/&, \"cutoff\": 1.2/" \
-        target/target.json >target/$fit.json
-    "$mesofit" fit target/$fit.json -o $fit --force || [ $? -eq 1 ]
-done
+MESOFIT=$mesofit sh ../../fits.sh target 576 1.2
 cd ..
-gnuplot -d figure.gp
+gnuplot -d -e 'liquid = "methanol"; low = 0.25; range = 1.2; depth = 1.2; top = 2.2; off = 0.1' ../liquid.gp
