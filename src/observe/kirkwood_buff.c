@@ -26,6 +26,8 @@ struct kirkwood_buff mf_kirkwood_buff_integrate(const struct rdf_bins *bins, con
     const double density = (double)count / volume, all = weight_below(range, range);
     double below = weight_below(mf_rdf_bins_edge(bins, 0), range), sum = inside - below,
            squares = 0;
+    if (4.0 / 3 * M_PI * range * range * range > volume)
+        return (struct kirkwood_buff){NAN, NAN, NAN, NAN};
     for (size_t k = 0; k < bins->count; k++) {
         const double above = weight_below(mf_rdf_bins_edge(bins, k + 1), range);
         const double own_error = isfinite(error[k]) ? error[k] : 0;

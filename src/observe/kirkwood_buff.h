@@ -23,7 +23,8 @@ struct kirkwood_buff {
 /// (observe/finite_size.h), which is taken out:
 ///   ρG = I/(1 − ∫ 4π r² u dr/V),   I the integral, and what is inside, times ρ.
 /// Errors of bins count as independent; those by sampling compensate each other in a liquid, which
-/// makes the standard error too large rather than too small.
+/// makes the standard error too large rather than too small. A g whose range is a sphere larger
+/// than the box is not that of its system: nothing is known then, all is NaN.
 /// @param[in] g, error   shape [bins.count]; an error that is NaN counts as 0
 /// @param[in] box, count  of the system that g comes from, in three dimensions
 /// @param[in] inside      volume times the share of all pairs that g leaves out [λ³]

@@ -191,17 +191,16 @@ static size_t step_of_ranges(const struct view *view) {
 }
 
 /// The largest 1 + ρG that `factor` g allows, by three standard errors and by any range from half
-/// of what is known on; +∞ where it is not defined.
+/// of what is known on; NaN where it is not known.
 static enum status largest_compressibility(const struct view *view, double factor,
                                            double *largest) {
     OWNED double *g = NULL;
-    *largest = INFINITY;
+    *largest = NAN;
     if (view->scene->setup.box.dimensions != 3 || view->like < 2)
         return STATUS_OK;
     TRY_ARRAY(g, view->bins->count);
     for (size_t k = 0; k < view->bins->count; k++)
         g[k] = factor * view->g[k];
-    *largest = -INFINITY;
     for (struct rdf_bins part = *view->bins; 2 * part.count >= view->bins->count;
          part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
@@ -212,15 +211,16 @@ static enum status largest_compressibility(const struct view *view, double facto
 }
 
 /// "1 + rho G = -8.42(12)": the error is by noise or, where that is more, by the range, half of how
-/// far the values up to three quarters of it and more are apart.
+/// far the values up to three quarters of it and more are apart. Of a range beyond the box it is
+/// that of the longest within.
 static void print_compressibility(const struct view *view, char *text, size_t size) {
     struct rdf_bins part = *view->bins;
-    struct kirkwood_buff whole = {0};
+    struct kirkwood_buff whole = {.compressibility = NAN};
     double min = INFINITY, largest = -INFINITY;
     for (; 4 * part.count >= 3 * view->bins->count; part.count -= step_of_ranges(view)) {
         const struct kirkwood_buff kb = mf_kirkwood_buff_integrate(
             &part, view->g, view->error, &view->scene->setup.box, view->like, view->inside);
-        if (part.count == view->bins->count)
+        if (isnan(whole.compressibility))
             whole = kb;
         min = fmin(min, kb.compressibility);
         largest = fmax(largest, kb.compressibility);
@@ -235,7 +235,7 @@ static enum status check_compressibility(const struct view *view, const char *fi
     double largest;
     char density[80], value[80], demixing[256];
     TRY(largest_compressibility(view, normalisation, &largest));
-    if (largest >= 0)
+    if (!(largest < 0))
         return STATUS_OK;
     print_density(view, density, sizeof density);
     print_compressibility(view, value, sizeof value);
@@ -371,7 +371,7 @@ static enum status warn_of_normalisation(const struct view *view,
     double largest;
     char value[80];
     TRY(largest_compressibility(view, 1, &largest));
-    if (largest >= 0)
+    if (!(largest < 0))
         return STATUS_OK;
     print_compressibility(view, value, sizeof value);
     mf_target_sanity_warn(

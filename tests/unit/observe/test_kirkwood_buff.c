@@ -67,6 +67,20 @@ static void test_kirkwood_buff_takes_out_the_finite_size(void **state) {
     assert_close(found.compressibility, 1 + 3000 / 1728.0 * infinite, 1e-9);
 }
 
+/// A range that is no part of the box says nothing of it: its tail cannot be taken out.
+static void test_kirkwood_buff_is_unknown_beyond_the_box(void **state) {
+    (void)state;
+    static const double range[] = {5, 8, 12};
+    const struct box box = {.dimensions = 3, .length = {12, 12, 12}};
+    for (int k = 0; k < 3; k++) {
+        const struct kirkwood_buff found = integrate(decay, range[k], &box, 500, 0.01);
+        const double all[] = {found.integral, found.integral_error, found.compressibility,
+                              found.compressibility_error};
+        for (int n = 0; n < 4; n++)
+            assert_int_equal(isfinite(all[n]), k == 0);
+    }
+}
+
 /// Dimers that do not see each other, M of them: 1 + ρG is the two beads of one, whether g has the
 /// pairs of a dimer, at a distance, or not.
 static void test_kirkwood_buff_counts_pairs_that_g_leaves_out(void **state) {
@@ -100,6 +114,7 @@ int main(void) {
         cmocka_unit_test(test_kirkwood_buff_is_the_polynomial_of_a_hole),
         cmocka_unit_test(test_kirkwood_buff_converges_as_the_cube_of_the_range),
         cmocka_unit_test(test_kirkwood_buff_takes_out_the_finite_size),
+        cmocka_unit_test(test_kirkwood_buff_is_unknown_beyond_the_box),
         cmocka_unit_test(test_kirkwood_buff_counts_pairs_that_g_leaves_out),
         cmocka_unit_test(test_kirkwood_buff_error_is_that_of_independent_bins),
     };

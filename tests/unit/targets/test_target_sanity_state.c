@@ -49,6 +49,22 @@ static void test_target_state_tells_fluctuations_of_many_beads(void **state) {
     assert_false(mf_target_state_print(&look, line));
 }
 
+/// A table that reaches beyond the scene's box is of another system: nothing is said of it.
+static void test_target_state_is_silent_on_a_range_beyond_the_box(void **state) {
+    (void)state;
+    char line[TARGET_STATE_LINE];
+    struct box box;
+    struct target_state look = make_state(&box, 0.3);
+    for (int k = 0; k < BINS; k++) {
+        const double r = mf_rdf_bins_centre(&bins, (size_t)k);
+        g[k] = 1 + 2.7 * exp(-r / 0.7) / r;
+    }
+    assert_true(mf_target_state_print(&look, line));
+    look.count = 100; // 6.9 wide, and g is known up to 5
+    box = (struct box){3, {cbrt(100 / 0.3), cbrt(100 / 0.3), cbrt(100 / 0.3)}};
+    assert_false(mf_target_state_print(&look, line));
+}
+
 /// Beads of dimers: g leaves out the partner of each. An ideal gas of them has 1 + ρG = 2 of its
 /// beads, 1 of itself; what makes 6 of single beads is (1 + 5.4)/2 of dimers.
 static void test_target_state_tells_fluctuations_of_molecules(void **state) {
@@ -109,6 +125,7 @@ static void test_target_state_tells_a_crystal(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_target_state_tells_fluctuations_of_many_beads),
+        cmocka_unit_test(test_target_state_is_silent_on_a_range_beyond_the_box),
         cmocka_unit_test(test_target_state_tells_fluctuations_of_molecules),
         cmocka_unit_test(test_target_state_tells_a_crystal),
     };
