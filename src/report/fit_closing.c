@@ -24,25 +24,56 @@ struct curve_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
     return (struct curve_knowledge){sqrt(squares / points), sqrt(errors / points), seen / points};
 }
 
-bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *const curve[UNKNOWNS],
+/// rms of the standard error of a friction weight that is well known, as a part of its own.
+static const double well = 0.1;
+
+/// Whether what is fitted of motion has no errors: those of ω are then the fit's own, which longer
+/// samples lessen as far as one likes.
+static bool motion_has_no_errors(const struct targets *targets) {
+    bool asked = false;
+    for (int kind = TARGET_ETD; kind <= TARGET_DIFFUSION; kind++) {
+        const struct target *target = &targets->target[kind];
+        if (!targets_ask(targets, kind))
+            continue;
+        asked = true;
+        for (size_t k = 0; k < target->count; k++)
+            if (target->error[k] > 0)
+                return false;
+    }
+    return asked;
+}
+
+bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const struct targets *targets,
+                             const double *const curve[UNKNOWNS],
                              const double *const error[UNKNOWNS], const struct units *units,
                              char reason[INVERSE_REASON_SIZE]) {
+    const bool own = motion_has_no_errors(targets);
     char unit[UNITS_NAME_SIZE], name[UNKNOWNS_NAME_SIZE];
     for (int kind = 0; kind < UNKNOWNS; kind++) {
         if (!unknown_is_omega(kind) || curve[kind] == NULL)
             continue;
         const struct curve_knowledge known =
             mf_fit_closing_knowledge(unknowns, kind, curve[kind], error[kind]);
-        if (!(known.seen < 0.5))
+        const bool noisy = known.seen < 0.5, open = own && known.error > well * known.rms;
+        if (!noisy && !open)
             continue;
         const double factor = mf_units_factor(units, mf_unknowns_unit(kind));
         mf_unknowns_kind_name(unknowns, kind, name);
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "%.24s is mostly noise: only %.0f %% of it is above two of its standard errors, "
-                 "%.2g%.16s rms of %.2g; more exact targets of motion, or fewer \"coefficients\", "
-                 "are needed",
-                 name, 100 * known.seen, factor * known.error,
-                 mf_units_suffix(units, mf_unknowns_unit(kind), unit), factor * known.rms);
+        if (open)
+            snprintf(
+                reason, INVERSE_REASON_SIZE,
+                "%.24s is known to %.0f %% of it (rms), by the noise of the fit's own samples, "
+                "as its targets are given without errors; more \"samples\" of the method are "
+                "needed",
+                name, 100 * known.error / known.rms);
+        else
+            snprintf(
+                reason, INVERSE_REASON_SIZE,
+                "%.24s is mostly noise: only %.0f %% of it is above two of its standard errors, "
+                "%.2g%.16s rms of %.2g; more exact targets of motion, or fewer \"coefficients\", "
+                "are needed",
+                name, 100 * known.seen, factor * known.error,
+                mf_units_suffix(units, mf_unknowns_unit(kind), unit), factor * known.rms);
         return true;
     }
     return false;
@@ -181,8 +212,8 @@ void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result 
 static void print_verdict(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result) {
     char noise[INVERSE_REASON_SIZE] = "", text[FIT_VERDICT_SIZE];
-    mf_fit_closing_is_noise(unknowns, result->step.curve, result->step.curve_error,
-                            &fit->scene.units, noise);
+    mf_fit_closing_is_noise(unknowns, &fit->problem.targets, result->step.curve,
+                            result->step.curve_error, &fit->scene.units, noise);
     mf_fit_closing_verdict(fit, result, noise, text);
     mf_progress_print(to, "result: %s", text);
 }
@@ -247,7 +278,6 @@ static void print_slowest(struct progress *to, const struct inverse_slowest *slo
 
 static void print_friction(struct progress *to, const struct fit_file *fit,
                            const struct unknowns *unknowns, const struct fit_result *result) {
-    static const double well = 0.1;
     const struct units *units = &fit->scene.units;
     char unit[UNITS_NAME_SIZE], name[UNKNOWNS_NAME_SIZE];
     for (int kind = 0; kind < UNKNOWNS; kind++) {

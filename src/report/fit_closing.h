@@ -17,9 +17,12 @@ struct curve_knowledge mf_fit_closing_knowledge(const struct unknowns *unknowns,
                                                 enum unknown_kind kind, const double *curve,
                                                 const double *error);
 
-/// Whether more than half of a friction weight is noise: such a fit has not converged to it,
-/// however well its targets are met. Why, into `reason`. Tested: test_fit_closing.
-bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const double *const curve[UNKNOWNS],
+/// Whether more than half of a friction weight is noise, or, where what moves is given without
+/// errors, so that all noise is that of the fit's own samples, more than a tenth of it: such a fit
+/// has not converged to it, however well its targets are met. Why, into `reason`. Tested:
+/// test_fit_closing.
+bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const struct targets *targets,
+                             const double *const curve[UNKNOWNS],
                              const double *const error[UNKNOWNS], const struct units *units,
                              char reason[INVERSE_REASON_SIZE]);
 

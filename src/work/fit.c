@@ -320,9 +320,9 @@ static void doubt(struct run *run, struct verification *verification) {
     if (mf_fit_verify_any_contradicts(&run->fit, verification, step, step->reason))
         step->converged = step->exhausted = false;
     else if (step->converged &&
-             (mf_fit_closing_is_noise(&run->unknowns, (const double *const *)run->curve,
-                                      (const double *const *)run->curve_error,
-                                      &run->fit.scene.units, step->reason) ||
+             (mf_fit_closing_is_noise(
+                  &run->unknowns, &run->fit.problem.targets, (const double *const *)run->curve,
+                  (const double *const *)run->curve_error, &run->fit.scene.units, step->reason) ||
               mf_fit_closing_is_missed(&run->fit, verification, step->noise, step->reason))) {
         step->converged = false;
         step->exhausted = true;

@@ -47,13 +47,38 @@ static void test_closing_says_so_where_most_of_a_friction_weight_is_noise(void *
     const double *const errors[UNKNOWNS] = {[UNKNOWN_OMEGA] = error};
     begin(&unknowns, &problem);
     fill(&unknowns, 0.38, omega, error);
-    assert_true(mf_fit_closing_is_noise(&unknowns, curve, errors, NULL, reason));
+    assert_true(mf_fit_closing_is_noise(&unknowns, &problem.targets, curve, errors, NULL, reason));
     assert_contains(reason, "omega is mostly noise: only 3");
     fill(&unknowns, 0.6, omega, error);
-    assert_false(mf_fit_closing_is_noise(&unknowns, curve, errors, NULL, reason));
+    assert_false(mf_fit_closing_is_noise(&unknowns, &problem.targets, curve, errors, NULL, reason));
     for (size_t k = 0; k < OMEGA_POINTS; k++)
         error[k] = NAN; // a method that knows none
-    assert_false(mf_fit_closing_is_noise(&unknowns, curve, errors, NULL, reason));
+    assert_false(mf_fit_closing_is_noise(&unknowns, &problem.targets, curve, errors, NULL, reason));
+    mf_unknowns_clear(&unknowns);
+}
+
+/// What is given without errors leaves the noise of the fit's own samples alone, which more of them
+/// would lessen.
+static void test_closing_asks_for_samples_where_the_targets_have_no_errors(void **state) {
+    (void)state;
+    struct unknowns unknowns;
+    struct inverse_problem problem;
+    char reason[INVERSE_REASON_SIZE];
+    double omega[OMEGA_POINTS], error[OMEGA_POINTS], exact[] = {0, 0};
+    const double *const curve[UNKNOWNS] = {[UNKNOWN_OMEGA] = omega};
+    const double *const errors[UNKNOWNS] = {[UNKNOWN_OMEGA] = error};
+    begin(&unknowns, &problem);
+    problem.targets.target[TARGET_VACF] = (struct target){.count = 2, .error = exact};
+    fill(&unknowns, 1, omega, error); // 0.5 of 2 everywhere
+    assert_true(mf_fit_closing_is_noise(&unknowns, &problem.targets, curve, errors, NULL, reason));
+    assert_contains(reason, "omega is known to 25 % of it (rms), by the noise of the fit's own");
+    assert_contains(reason, "more \"samples\"");
+    exact[1] = 0.01;
+    assert_false(mf_fit_closing_is_noise(&unknowns, &problem.targets, curve, errors, NULL, reason));
+    exact[1] = 0;
+    for (size_t k = 0; k < OMEGA_POINTS; k++)
+        error[k] *= 0.3;
+    assert_false(mf_fit_closing_is_noise(&unknowns, &problem.targets, curve, errors, NULL, reason));
     mf_unknowns_clear(&unknowns);
 }
 
@@ -134,6 +159,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closing_tells_how_well_a_friction_weight_is_known),
         cmocka_unit_test(test_closing_says_so_where_most_of_a_friction_weight_is_noise),
+        cmocka_unit_test(test_closing_asks_for_samples_where_the_targets_have_no_errors),
         cmocka_unit_test(test_closing_says_so_where_a_friction_weight_misses_its_targets),
         cmocka_unit_test(test_closing_calls_success_only_what_agrees_and_is_known),
     };
