@@ -140,6 +140,9 @@ def test_hints_and_numbers_are_those_of_frames():
         mesofit.measure(mesofit.Frames(positions, [2, 2, 2]), temperature=300)
     with pytest.raises(mesofit.InputError, match="frame 3: its time, inf, is not finite"):
         mesofit.measure(mesofit.Frames(np.ones((3, 2, 3)), [2, 2, 2], times=[0, 1, np.inf]))
+    positions[3, 4, 1] = 0
+    with pytest.raises(mesofit.InputError, match=r"frame 2: its time is 1e\+300 ps, beyond"):
+        mesofit.measure(mesofit.Frames(positions, [2, 2, 2], times=np.arange(20) * 1e300))
 
 
 STEPPED = {

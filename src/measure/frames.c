@@ -222,11 +222,21 @@ static bool is_wanted(const struct frames *frames, double time) {
            fabs(steps - rint(steps)) < share + time_tolerance(time) / plan->every;
 }
 
+/// Squares of what is longer, and what is divided by them, would be no numbers.
+static enum status check_time(const struct trajectory_frame *frame) {
+    static const double longest = 1e30; // [ps]: more than the age of the universe
+    if (isnan(frame->time) || fabs(frame->time) <= longest)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: frame %zu: its time is %.3g ps, beyond %g ps",
+                          frame->file, frame->number, frame->time, longest);
+}
+
 static enum status assess_time(struct frames *frames, const struct trajectory_frame *frame,
                                bool *use) {
     const struct frames_plan *const plan = &frames->plan;
     const double time = frame->time;
     *use = true;
+    TRY(check_time(frame));
     if (isnan(time))
         return check_known(frames, frame);
     *use = !(time < plan->begin - time_tolerance(time));

@@ -61,6 +61,20 @@ static void test_boxes_and_places_that_are_none_are_refused(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+static void test_times_that_are_none_are_refused(void **state) {
+    static const char *const time[] = {"1e300", "-1e300"};
+    static const char frames[] =
+        "3\nLattice=\"3 0 0 0 3 0 0 0 3\" Time=0\nA 0 0 0\nA 1 1 1\nA 2 2 2\n"
+        "3\nLattice=\"3 0 0 0 3 0 0 0 3\" Time=TIME\nA 0 0 0\nA 1 1 1\nA 2 2 2\n";
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "a.xyz", frames, "TIME", time[k]);
+        RUN_PROGRAM(&result, "measure", "a.xyz", "--file-units", "nano", "-o", "out");
+        run_program_assert_code(&result, 2);
+        assert_contains(result.err, "a.xyz: frame 1: its time is");
+        assert_false(temporary_folder_exists("out/summary.json"));
+    }
+}
+
 static void test_lines_of_old_macs_are_refused(void **state) {
     write_dump(*state, "0 3", 20, "0", "B");
     char *text = temporary_folder_read("a.dump");
@@ -199,6 +213,7 @@ static void test_frames_of_one_time_are_used_when_they_are_independent(void **st
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_boxes_and_places_that_are_none_are_refused),
+        TEST(test_times_that_are_none_are_refused),
         TEST(test_lines_of_old_macs_are_refused),
         TEST(test_tables_without_a_number_are_not_written),
         TEST(test_frames_before_equilibrium_are_left_out),
