@@ -49,6 +49,23 @@ static bool has_same_letters(const char *a, const char *b) {
     return true;
 }
 
+/// The one name that begins so, as "sim" of "simulate"; NULL if there are several.
+static const char *find_beginning(const char *given, const char *const *known, size_t count) {
+    const size_t length = strlen(given);
+    const char *found = NULL;
+    for (size_t k = 0; k < count; k++) {
+        size_t same = 0;
+        while (same < length && lower(given[same]) == lower(known[k][same]))
+            same++;
+        if (same < length || length < 2)
+            continue;
+        if (found)
+            return NULL;
+        found = known[k];
+    }
+    return found;
+}
+
 const char *mf_nearest_name(const char *given, const char *const *known, size_t count) {
     const char *nearest = NULL;
     size_t min = LONGEST_NAME + 1; // farther than any two names
@@ -69,7 +86,7 @@ const char *mf_nearest_name(const char *given, const char *const *known, size_t 
             nearest = known[k];
         }
     }
-    return nearest;
+    return nearest ? nearest : find_beginning(given, known, count);
 }
 
 void mf_nearest_hint(const char *given, const char *const *known, size_t count, char *text,

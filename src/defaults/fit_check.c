@@ -168,6 +168,11 @@ static bool follows_pairs(const struct inverse_method *method) {
     return method->kind != INVERSE_MATCHING || method == &mf_successive;
 }
 
+/// The closure of "hnc" needs g(r) of all pairs that there are.
+static bool follows_given_pairs(const struct inverse_method *method) {
+    return follows_pairs(method) && method != &mf_hnc;
+}
+
 /// What acts between pairs whose g(r) is not given: a potential of nobody's is none.
 static bool knows_others(const struct fit_file *fit) {
     const bool engine = mf_fit_engine_knows_more(fit) && mf_fit_engine_verifies(fit);
@@ -186,13 +191,13 @@ static enum status check_pair(const struct fit_file *fit, int pair, const char *
                               "%s: target.rdf.%s: missing: give its g(r), or, where its potential "
                               "is known, that as \"known\" of \"scene\"",
                               file, name);
-    if (follows_pairs(fit->method))
+    bool (*const can)(const struct inverse_method *) = exists ? follows_given_pairs : follows_pairs;
+    if (can(fit->method))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: method.name: %s pair %s, for which \"%s\" would look for a "
-                          "potential; %s do not",
-                          file, exists ? "no g(r) is given of the" : "a single bead has no", name,
-                          fit->method->name, mf_methods_list(follows_pairs, others));
+                          "%s: method.name: %s pair %s, which \"%s\" needs; %s do not", file,
+                          exists ? "no g(r) is given of the" : "a single bead has no", name,
+                          fit->method->name, mf_methods_list(can, others));
 }
 
 static enum status check_pairs(const struct fit_file *fit, const char *file) {

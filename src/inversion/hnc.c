@@ -53,12 +53,6 @@ static enum status create(void *inversion, const struct inverse_method *method,
     if (problem->scene.box.dimensions != 3)
         return mf_status_fail(STATUS_BAD_INPUT, "method.name: \"%s\" is for three dimensions",
                               method->name);
-    for (int pair = 0; pair < mf_composition_pairs(&problem->scene.composition); pair++)
-        if (!mf_targets_have_pair(&problem->targets, (size_t)pair) &&
-            mf_composition_has_pairs(&problem->scene.composition, pair))
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "method.name: \"%s\" needs g(r) of all pairs; \"imc\" does not",
-                                  method->name);
     return mf_inversion_create(inversion, method, problem, parameters);
 }
 

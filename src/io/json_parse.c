@@ -126,6 +126,27 @@ static enum status check_escapes(const char *file, const char *text) {
     return STATUS_OK;
 }
 
+/// Whether there are rows of numbers below comments, if any, of "#" or of an .xvg file.
+static bool is_table(const char *text) {
+    text += strspn(text, spaces);
+    while (*text == '#' || *text == '@') {
+        text += strcspn(text, "\r\n");
+        text += strspn(text, spaces);
+    }
+    text += *text == '-';
+    return *text >= '0' && *text <= '9';
+}
+
+/// What a table is for stands in a JSON file.
+static enum status fail_as_table(const char *file) {
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: a table, not JSON: it is named in a JSON file, as {\"target\": "
+                          "{\"rdf\": {\"file\": \"%s\"}}, \"scene\": {\"density\": ..., "
+                          "\"temperature\": ...}} for a fit, or as {\"law\": \"table\", \"file\": "
+                          "\"%s\"} in a scene",
+                          file, file, file);
+}
+
 enum status mf_json_parse(const char *file, const char *text, struct cJSON **root) {
     const char *end = text;
     *root = NULL;
@@ -135,15 +156,12 @@ enum status mf_json_parse(const char *file, const char *text, struct cJSON **roo
     if (parsed == NULL && errno == ENOMEM)
         return mf_status_fail(STATUS_NO_MEMORY, "%s: out of memory", file);
     if (parsed == NULL)
-        return fail_where_it_ended(file, text, end);
+        return is_table(text) ? fail_as_table(file) : fail_where_it_ended(file, text, end);
     end += strspn(end, spaces);
-    const bool is_table = cJSON_IsNumber(parsed);
     if (*end != '\0') {
         cJSON_Delete(parsed);
-        if (is_table)
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: a table, not JSON: it is named in a JSON file, as \"file\"",
-                                  file);
+        if (is_table(text))
+            return fail_as_table(file);
         return fail_at(file, text, end, "nothing after the document");
     }
     *root = parsed;

@@ -204,6 +204,27 @@ static void test_states_share_the_rest_when_each_has_a_known_part(void **state) 
 #define OTHER "{\"law\": \"soft-repulsion\", \"a\": 40}"
 #define LAWS(PAIR) "{\"A-A\": " SAME ", \"A-B\": " PAIR ", \"B-B\": " SAME "}"
 
+/// None of them is named as one that would do.
+static void assert_methods_of_all_pairs_are_refused(struct temporary_folder *folder) {
+    static const char *const method[] = {"hnc", "cma-es"};
+    char *text = temporary_folder_read("run.json");
+    for (int k = 0; k < 2; k++) {
+        char name[40], refused[80];
+        snprintf(name, sizeof name, "{\"name\": \"%s\"}", method[k]);
+        snprintf(refused, sizeof refused, "no g(r) is given of the pair A-A, which \"%s\" needs; ",
+                 method[k]);
+        small_inputs_write(folder, "needs.json", text, METHOD, "\"method\": METHOD");
+        small_inputs_change(folder, "needs.json", "METHOD", name);
+        RUN_PROGRAM(&result, "fit", "needs.json", "-o", "refused", "--quiet");
+        run_program_assert_code(&result, 2);
+        assert_contains(result.err, refused);
+        const char *others = strstr(result.err, refused) + strlen(refused);
+        assert_non_null(strstr(others, "\"imc\""));
+        assert_null(strstr(others, "\"hnc\""));
+    }
+    free(text);
+}
+
 /// Where a solute meets a solvent: g(r) of the pairs that are looked for is enough, if the others
 /// are known.
 static void test_pairs_without_a_target_are_known(void **state) {
@@ -232,6 +253,7 @@ static void test_pairs_without_a_target_are_known(void **state) {
     assert_true(results_number("out/summary.json", "rdf_rmse") < 0.02);
     RUN_PROGRAM(&result, "fit", "out/used.json", "--explain");
     run_program_assert_code(&result, 0);
+    assert_methods_of_all_pairs_are_refused(*state);
     small_inputs_change(*state, "run.json", ", \"known\": " LAWS("{\"law\": \"none\"}"), "");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused", "--quiet");
     run_program_assert_code(&result, 2);

@@ -36,6 +36,16 @@ static void test_nearest_name_finds_nothing_when_too_far(void **state) {
     assert_null(mf_nearest_name("seed", known, 0));
 }
 
+static void test_nearest_name_is_the_only_one_that_begins_so(void **state) {
+    (void)state;
+    assert_nearest("temp", "temperature");
+    assert_nearest("Te", "temperature");
+    assert_nearest("s", NULL);
+    assert_nearest("se", "seed");
+    static const char *const axes[] = {"periodic", "period_of_noise"};
+    assert_null(mf_nearest_name("per", axes, 2));
+}
+
 static void test_nearest_name_prefers_the_same_letters(void **state) {
     static const char *const axes[] = {"y", "xy", "yz"};
     (void)state;
@@ -81,6 +91,7 @@ int main(void) {
         cmocka_unit_test(test_nearest_name_finds_nothing_when_too_far),
         cmocka_unit_test(test_nearest_name_finds_nothing_when_the_name_is_very_long),
         cmocka_unit_test(test_nearest_name_finds_nothing_when_no_letter_is_the_same),
+        cmocka_unit_test(test_nearest_name_is_the_only_one_that_begins_so),
         cmocka_unit_test(test_nearest_name_prefers_the_same_letters),
         cmocka_unit_test(test_nearest_hint_lists_the_known_when_nothing_is_near),
     };

@@ -66,6 +66,8 @@ static void test_json_parse_gives_the_place_when_the_text_is_malformed(void **st
     assert_malformed("{\"a\": 1} {}", ":1:10: expected nothing after the document, found '{'");
     assert_malformed("{\"a\": 1}x", ":1:9: expected nothing after the document");
     assert_malformed("0.5 1.2\n0.6 1.1\n", ": a table, not JSON: it is named in a JSON file");
+    assert_malformed("# r g\n0.5 1.2\n", ": a table, not JSON: it is named in a JSON file");
+    assert_malformed("@ title\n0.5 1.2\n", "{\"target\": {\"rdf\": {\"file\": ");
     assert_malformed("{\"a\": 1e}", ":1:8: expected ',', ':' or a closing bracket");
     assert_malformed("{\"a\": 0x10}", ":1:8: expected ',', ':' or a closing bracket");
 }
