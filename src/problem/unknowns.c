@@ -45,6 +45,10 @@ size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kin
                                      : 1;
 }
 
+bool mf_unknowns_is_sought(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve) {
+    return kind != UNKNOWN_POTENTIAL || unknowns->potential.known_of[curve] > 0;
+}
+
 struct unknowns_part mf_unknowns_part(const struct unknowns *unknowns, enum unknown_kind kind,
                                       size_t curve) {
     const struct potential_grid *grid = &unknowns->potential;

@@ -27,6 +27,9 @@ const double *mf_unknowns_r(const struct unknowns *unknowns, enum unknown_kind k
 /// type, and one for each group of bonds, angles and dihedrals.
 size_t mf_unknowns_curve_count(const struct unknowns *unknowns, enum unknown_kind kind);
 
+/// Whether one of them is looked for: not the potential of pairs of which no g(r) is given.
+bool mf_unknowns_is_sought(const struct unknowns *unknowns, enum unknown_kind kind, size_t curve);
+
 /// The points of one of them.
 struct unknowns_part {
     size_t first, points;

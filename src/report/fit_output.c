@@ -165,7 +165,8 @@ enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknow
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->step.curve[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++)
-            TRY(write_flat(fit, kind, n, unknowns, result, folder));
+            if (mf_unknowns_is_sought(unknowns, kind, n))
+                TRY(write_flat(fit, kind, n, unknowns, result, folder));
     if (result->step.curve[UNKNOWN_POTENTIAL])
         TRY(write_potentials(fit, unknowns, result, folder));
     for (size_t n = 0; result->step.curve[UNKNOWN_BONDED] && n < unknowns->potential.groups; n++)

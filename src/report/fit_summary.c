@@ -282,6 +282,8 @@ static void write_start(struct json_writer *writer, const struct unknowns *unkno
              n++) {
             const struct fit_change change = mf_fit_change_find(
                 unknowns, kind, n, result->first[kind], result->step.curve[kind]);
+            if (isnan(change.rms))
+                continue; // that of pairs without g(r) is not looked for
             mf_unknowns_curve_name(unknowns, kind, n, name);
             mf_json_begin(writer, name);
             write_quantity(writer, "change", mf_unknowns_unit(kind), change.rms);

@@ -250,7 +250,8 @@ enum status mf_history_write(const struct history *history, const struct inverse
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t curve = 0;
              history->points[kind] > 0 && curve < mf_unknowns_curve_count(unknowns, kind); curve++)
-            TRY(write_curve(history, unknowns, kind, curve, units, folder));
+            if (mf_unknowns_is_sought(unknowns, kind, curve))
+                TRY(write_curve(history, unknowns, kind, curve, units, folder));
     return STATUS_OK;
 }
 

@@ -247,6 +247,12 @@ static void test_pairs_without_a_target_are_known(void **state) {
     assert_contains(result.err, "no g(r) is given of A-A, B-B: their potential is not looked for; "
                                 "it is that of scene.known");
     assert_null(strstr(result.err, "nan"));
+    assert_true(temporary_folder_exists("out/potential_A-B_history.tsv"));
+    assert_false(temporary_folder_exists("out/potential_A-A_history.tsv"));
+    assert_false(temporary_folder_exists("out/potential_B-B_flat.tsv"));
+    char *summary = temporary_folder_read("out/summary.json");
+    assert_null(strstr(summary, "potential_A-A"));
+    free(summary);
     const double z = rms_deviation("out/potential_A-B.tsv", true);
     print_message("(phi - truth)/error %.2f rms\n", z);
     assert_true(z < 1.3);
