@@ -33,6 +33,16 @@ def version() -> str:
                           text=True, check=True).stdout.strip()
 
 
+def links() -> list[str]:
+    """To pages of the repository, once CITATION.cff says where that is."""
+    found = re.search(r'^repository-code: "?(https://[^"\s]+?)/?"?$', (SOURCE / "CITATION.cff").read_text(), re.M)
+    if not found:
+        return []
+    pages = f"{found[1]}/blob/v{version().partition('+')[0]}"
+    return [f"Project-URL: {name}, {address}" for name, address in (
+        ("Source", found[1]), ("Documentation", f"{pages}/README.md"), ("Changelog", f"{pages}/CHANGELOG.md"))]
+
+
 def metadata() -> str:
     project = (HERE / "pyproject.toml").read_text()
 
@@ -40,9 +50,9 @@ def metadata() -> str:
         return re.search(rf'^{key} = "(.*)"', project, re.M).group(1)
     keywords = ",".join(re.findall('"(.*?)"', re.search(r"^keywords = \[(.*)\]", project, re.M).group(1)))
     lines = ["Metadata-Version: 2.1", f"Name: {value('name')}", f"Version: {version()}",
-             f"Summary: {value('description')}", "License: GPL-3.0-or-later",
+             f"Summary: {value('description')}", "Author: The mesofit authors", "License: GPL-3.0-or-later",
              f"Keywords: {keywords}",
-             f"Requires-Python: {value('requires-python')}"]
+             f"Requires-Python: {value('requires-python')}", *links()]
     inside = re.search(r"^dependencies = \[(.*)\]", project, re.M).group(1)
     lines += [f"Classifier: {known}" for known in re.findall(r'^    "(.* :: .*)",$', project, re.M)]
     lines += [f"Requires-Dist: {need}" for need in re.findall(r'"(.*?)"', inside)]
@@ -150,7 +160,7 @@ def build_editable(wheel_directory, config_settings=None, metadata_directory=Non
 # Source archives ----------------------------------------------------------------------------------
 
 #: What the library is built of, beside the package.
-SOURCES = ("Makefile", "LICENSE", "README.md", "mesofit.pc.in", "include", "src", "plots", "share")
+SOURCES = ("Makefile", "LICENSE", "CITATION.cff", "README.md", "mesofit.pc.in", "include", "src", "plots", "share")
 
 
 def build_sdist(sdist_directory, config_settings=None):

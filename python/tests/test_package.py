@@ -83,6 +83,18 @@ def test_archive_has_all_sources(tmp_path):
     assert done.stdout.strip() == backend.version()
 
 
+def test_links_are_to_where_the_repository_is(monkeypatch, tmp_path):
+    monkeypatch.setattr(backend, "SOURCE", tmp_path)
+    monkeypatch.setattr(backend, "version", lambda: "1.2.3+4.g5678")
+    (tmp_path / "CITATION.cff").write_text("type: software\nversion: 1.2.3\n")
+    assert backend.links() == []
+    with (tmp_path / "CITATION.cff").open("a") as citation:
+        citation.write('repository-code: "https://code.example/mesofit"\n')
+    assert backend.links() == ["Project-URL: Source, https://code.example/mesofit",
+                               "Project-URL: Documentation, https://code.example/mesofit/blob/v1.2.3/README.md",
+                               "Project-URL: Changelog, https://code.example/mesofit/blob/v1.2.3/CHANGELOG.md"]
+
+
 @pytest.fixture
 def clone(tmp_path):
     """A clone of two files, and what runs Git in it."""
