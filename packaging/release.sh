@@ -15,7 +15,7 @@ python=${PYTHON:-/usr/bin/python3}
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 rm -rf "$made"
-mkdir -p "$made"
+mkdir -p "$made/python"
 
 step() {
     echo "== $version: $*"

@@ -12,15 +12,14 @@
 
 enum { ORDER = 4 }; ///< of a cubic
 
-/// Σ x_k B_k over those basis functions that are not 0 at t, the one of the last coefficient left
-/// out.
-static double value(gsl_bspline_workspace *basis, gsl_vector *nonzero, const double *coefficients,
+/// Σ x_k B_k over all basis functions but that of the last coefficient. (GSL 2.7 and 2.8 share no
+/// call for those alone that are not 0 at t.)
+static double value(gsl_bspline_workspace *basis, gsl_vector *functions, const double *coefficients,
                     size_t count, double t) {
-    size_t first, last;
     double sum = 0;
-    gsl_bspline_eval_nonzero(GSL_MIN(GSL_MAX(t, 0), 1), nonzero, &first, &last, basis);
-    for (size_t k = first; k <= last && k < count; k++)
-        sum += coefficients[k] * gsl_vector_get(nonzero, k - first);
+    gsl_bspline_eval(GSL_MIN(GSL_MAX(t, 0), 1), functions, basis);
+    for (size_t k = 0; k < count; k++)
+        sum += coefficients[k] * gsl_vector_get(functions, k);
     return sum;
 }
 
@@ -40,14 +39,14 @@ static enum status bspline_values(const double *coefficients, size_t count, cons
                                   double *values, size_t points) {
     const size_t order = GSL_MIN(ORDER, count + 1), breaks = count + 1 - order + 2;
     gsl_bspline_workspace *basis = gsl_bspline_alloc(order, breaks);
-    gsl_vector *nonzero = gsl_vector_alloc(order);
+    gsl_vector *functions = gsl_vector_alloc(count + 1);
     enum status status = STATUS_OK;
-    if (basis == NULL || nonzero == NULL || gsl_bspline_knots_uniform(0, 1, basis) != 0)
+    if (basis == NULL || functions == NULL || gsl_bspline_knots_uniform(0, 1, basis) != 0)
         status = mf_status_fail(STATUS_NO_MEMORY, "out of memory for a spline of %zu coefficients",
                                 count);
     for (size_t p = 0; status == STATUS_OK && p < points; p++)
-        values[p] = value(basis, nonzero, coefficients, count, t[p]);
-    gsl_vector_free(nonzero);
+        values[p] = value(basis, functions, coefficients, count, t[p]);
+    gsl_vector_free(functions);
     gsl_bspline_free(basis);
     return status;
 }
