@@ -9,6 +9,12 @@
 #include <stdio.h>
 #include <string.h>
 
+// expat 2.9 warns of the names that those before have alone.
+#if XML_MAJOR_VERSION == 2 && XML_MINOR_VERSION < 9
+#define XML_GetCurrentLineNumber64 XML_GetCurrentLineNumber
+#define XML_GetCurrentColumnNumber64 XML_GetCurrentColumnNumber
+#endif
+
 struct reading {
     struct xml_document *document;
     XML_Parser parser;
@@ -25,7 +31,7 @@ static void stop(struct reading *reading, enum status status) {
 }
 
 static size_t line_of(const struct reading *reading) {
-    return XML_GetCurrentLineNumber(reading->parser);
+    return XML_GetCurrentLineNumber64(reading->parser);
 }
 
 static void add_child(struct reading *reading, struct xml_element *element) {
@@ -134,7 +140,7 @@ static enum status parse(struct reading *reading, const char *text, size_t lengt
     if (error == XML_ERROR_NO_MEMORY)
         return mf_status_fail(STATUS_NO_MEMORY, "%s: no memory", reading->document->file);
     return mf_status_fail(STATUS_BAD_INPUT, "%s:%zu:%zu: no XML: %s", reading->document->file,
-                          line_of(reading), (size_t)XML_GetCurrentColumnNumber(parser) + 1,
+                          line_of(reading), (size_t)XML_GetCurrentColumnNumber64(parser) + 1,
                           XML_ErrorString(error));
 }
 
