@@ -343,9 +343,10 @@ number:
 	packaging/number.sh "$(NUMBER)"
 release:
 	packaging/release.sh
-# The pages as a site (Debian: mkdocs-material).
-site:
-	packaging/site.py $(BUILD)/site
+# The pages as a site (Debian: mkdocs-material, python3-nbconvert, python3-ipykernel, and what notebooks import).
+site: all
+	MESOFIT_LIBRARY=$(abspath $(BUILD)/$(SONAME)) PYTHONPATH=$(abspath python) PYTHONDONTWRITEBYTECODE=1 \
+	    PYDEVD_DISABLE_FILE_VALIDATION=1 $(PYTHON) packaging/site.py $(BUILD)/site
 
 .PHONY: standard-set
 standard-set: $(PROGRAM)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """site.py FOLDER: the pages of the repository as a site, FOLDER/site, by mkdocs (Debian: mkdocs-material). They lie in
-it as they lie in the repository, so that their links hold; every link of what comes out is followed."""
+it as they lie in the repository, so that their links hold; every link of what comes out is followed. Notebooks are
+pages, too, with what their cells show (Debian: python3-nbconvert, python3-ipykernel)."""
 
 import html
 import os
@@ -10,6 +11,10 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+import nbclient
+import nbconvert
+import nbformat
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -29,6 +34,10 @@ NAVIGATION = """
   - Cluster, live view: docs/cluster-and-live.md
   - Coming from VOTCA: docs/coming-from-votca.md
 - Python: docs/python.md
+- Notebooks:
+  - From a trajectory to an engine: examples/trajectory_to_engine.md
+  - A digitised g(r): examples/digitised_rdf.md
+  - A force and an optimiser of your own: examples/own_force_and_optimiser.md
 - Reference:
   - Keys and options: docs/reference.md
   - Python: docs/python-reference.md
@@ -65,6 +74,8 @@ plugins: [search]
 nav:
 """
 
+#: A link to a notebook, whose page has its name.
+NOTEBOOK = re.compile(r"(\]\([^)\s]+)\.ipynb\)")
 LINK = re.compile(r"(!?\[[^\]]*\])\(([^)\s]+)\)")
 
 
@@ -92,11 +103,35 @@ def gather(pages):
         wanted |= set(inside)
         (pages / folder).mkdir(parents=True, exist_ok=True)
         (pages / folder / "README.md").write_text(
-            f"# {folder}\n\n" + "".join(f"- [{path.name}]({path.name})\n" for path in inside))
-    for path in wanted:
-        if path in files:
-            (pages / path).parent.mkdir(parents=True, exist_ok=True)
+            f"# {folder}\n\n" + NOTEBOOK.sub(r"\1.md)", "".join(f"- [{path.name}]({path.name})\n" for path in inside)))
+    for path in wanted & files:
+        (pages / path).parent.mkdir(parents=True, exist_ok=True)
+        if path.suffix == ".md":
+            (pages / path).write_text(NOTEBOOK.sub(r"\1.md)", (ROOT / path).read_text()))
+        elif path.suffix != ".ipynb":
             shutil.copy(ROOT / path, pages / path)
+
+
+def execute(notebook, clone):
+    """The notebook with what its cells show, run in a copy of the examples, beside all else of the repository."""
+    shutil.copytree(ROOT / "examples", clone / "examples")
+    for beside in ("runs", "targets", "tests"):
+        (clone / beside).symlink_to(ROOT / beside)
+    read = nbformat.read(notebook, as_version=4)
+    nbclient.NotebookClient(read, kernel_name="python3", timeout=None,
+                            resources={"metadata": {"path": str(clone / "examples")}}).execute()
+    shutil.rmtree(clone)
+    return read
+
+
+def show_notebooks(pages, clone):
+    for notebook in sorted((ROOT / "examples").glob("*.ipynb")):
+        text, more = nbconvert.MarkdownExporter().from_notebook_node(
+            execute(notebook, clone), {"output_files_dir": notebook.stem})
+        (pages / "examples" / notebook.stem).mkdir(parents=True, exist_ok=True)
+        (pages / "examples" / f"{notebook.stem}.md").write_text(text)
+        for name, figure in more["outputs"].items():
+            (pages / "examples" / name).write_bytes(figure)
 
 
 def mend_bars(site):
@@ -134,6 +169,7 @@ def main():
     shutil.rmtree(place, ignore_errors=True)
     pages.mkdir(parents=True)
     gather(pages)
+    show_notebooks(pages, place / "clone")
     settings = place / "mkdocs.yml"
     settings.write_text(SETTINGS.format(pages=pages, site=site) + NAVIGATION)
     built = subprocess.run(["mkdocs", "build", "--config-file", str(settings)], stderr=subprocess.PIPE, text=True)
