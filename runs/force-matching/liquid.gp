@@ -11,6 +11,7 @@ titles = "'force matching' 'force matching, 1 bar' 'imc' 'relative-entropy'"
 colour(n) = word("#0072b2 #56b4e9 #d55e00 #009e73", n)
 table(n, name) = sprintf("out/%s/%s.tsv", word(methods, n), name)
 set multiplot layout 3, 1
+set lmargin 9
 set key right top Left reverse
 set ylabel "{/Symbol F} [kJ/mol]"
 set yrange [-depth:3]
