@@ -88,7 +88,8 @@ bool mf_thermodynamics_missed(double temperature, double error, double wanted);
 
 /// The same of a simulation whose temperature is held, by five blocks or more, whose error is at
 /// least that of as many independent samples; unless a force drives a flow, or a solvent one.
-/// Fails: UNSTABLE with the numbers in the message; UNCONVERGED from 2.5 % on. Tested: test_thermodynamics.
+/// Fails: UNSTABLE with the numbers in the message; UNCONVERGED from 2.5 % on. Tested:
+/// test_thermodynamics.
 enum status mf_thermodynamics_assess_held(const struct thermodynamics_summary *summary,
                                           const struct simulation_setup *setup) MUST_USE;
 
