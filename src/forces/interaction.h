@@ -40,9 +40,6 @@ struct interaction {
     /// Is of beads that find each other, by the list or by particles->fraction: both are of the
     /// last step's end, and mean nothing in between (dynamics/respa.h).
     bool finds_pairs;
-    /// Does work as long as it acts: what the velocities show is a flow, too, and not the
-    /// temperature alone.
-    bool drives;
     /// Force on each particle that drives it for ever, in a direction of its own [k_B T_0/λ]. NULL:
     /// none.
     double (*push)(const void *parameters);

@@ -43,7 +43,6 @@ const struct interaction mf_shear_wave = {
                "J. Chem. Phys. 116, 209 (2002)",
     .fields = fields,
     .parameters_size = sizeof(struct shear_wave_parameters),
-    .drives = true,
     .cost = 12,
     .begin = begin,
     .add = add,

@@ -37,7 +37,6 @@ const struct interaction mf_uniform_force = {
     .summary = "the same force F on every particle: U = -F.x with x unwrapped",
     .fields = fields,
     .parameters_size = sizeof(struct parameters),
-    .drives = true,
     .cost = 1,
     .add = add,
     .laplacian = mf_interaction_no_laplacian,

@@ -238,56 +238,10 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
                           s->temperature, s->temperature_configurational, wanted);
 }
 
-/// Whether the velocities have the temperature that friction holds, and nothing but that.
-static bool shows_held(const struct thermodynamics_summary *s,
-                       const struct simulation_setup *setup) {
-    for (int k = 0; k < setup->interactions; k++)
-        if (setup->interaction[k].kind->drives)
-            return false;
-    return s->blocks >= MIN_BLOCKS && isfinite(s->temperature) && shows_forces(setup) &&
-           simulation_has_velocities(setup) && mf_simulation_is_thermal(setup) &&
-           simulation_holds_temperature(setup);
-}
-
-/// Share of the temperature by which that of the scene may be missed: what is farther off is
-/// another state. What is nearer, but by more than the first, is told.
-static const double little = 0.025, much = 0.05;
-
-bool mf_thermodynamics_missed(double temperature, double error, double wanted) {
-    return fabs(temperature - wanted) > fmax(much * wanted, deviations * error);
-}
-
-/// The error of a mean of blocks if each were a single independent sample: few that are alike by
-/// chance, or by correlation, would have less.
-static double least_error(const struct thermodynamics_summary *s,
-                          const struct simulation_setup *setup) {
-    const double degrees = setup->box.dimensions * (double)setup->placement.count;
-    return setup->temperature * sqrt(2 / (degrees * (double)s->blocks));
-}
-
-enum status mf_thermodynamics_assess_held(const struct thermodynamics_summary *summary,
-                                          const struct simulation_setup *setup) {
-    const struct thermodynamics_summary *s = summary;
-    const double wanted = setup->temperature;
-    if (!shows_held(s, setup))
-        return STATUS_OK;
-    const double error = fmax(s->temperature_error, least_error(s, setup));
-    if (!(fabs(s->temperature - wanted) > fmax(little * wanted, deviations * error)))
-        return STATUS_OK;
-    return mf_status_fail(
-        mf_thermodynamics_missed(s->temperature, error, wanted) ? STATUS_UNSTABLE
-                                                                : STATUS_UNCONVERGED,
-        "the temperature is %.3g" STATUS_TEMPERATURE
-        " by the velocities, not %.3g" STATUS_TEMPERATURE
-        ", %.1f %% off with an error of %.1f %%: lower \"time_step\", or "
-        "equilibrate for longer",
-        s->temperature, wanted, 100 * (s->temperature / wanted - 1), 100 * error / wanted);
-}
-
 /// Whether a temperature is off by more than little and by more than chance.
 static bool is_off(double temperature, double error, double wanted) {
-    static const double errors = 3;
-    return fabs(temperature - wanted) > fmax(little * wanted, errors * error);
+    static const double min = 0.025, errors = 3;
+    return fabs(temperature - wanted) > fmax(min * wanted, errors * error);
 }
 
 enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
@@ -322,7 +276,7 @@ enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *su
 
 struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,
                                                 const struct simulation_setup *setup) {
-    static const double least = 0.01, errors = 3;
+    static const double little = 0.01, errors = 3;
     const struct thermodynamics_summary *s = summary;
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const struct thermodynamics_off each[2] = {
@@ -335,7 +289,7 @@ struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summ
         return off;
     for (int k = 0; k < (shows_forces(setup) ? 2 : 1); k++) {
         const double error = is_absurd(each[k].share + 1, 1) ? 0 : each[k].error; // no chance
-        const double allowed = fmax(least, errors * error);
+        const double allowed = fmax(little, errors * error);
         const double far = fabs(each[k].share) / allowed;
         within = isfinite(far) ? fmax(within, allowed) : within;
         if (!(far > farthest)) // it is not known

@@ -82,17 +82,6 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
 enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summary,
                                      const struct simulation_setup *setup) MUST_USE;
 
-/// Whether a kinetic temperature is not the one that is wanted: off by more than 5 % and four
-/// standard errors. Nothing that was measured is of the state that was asked for then.
-bool mf_thermodynamics_missed(double temperature, double error, double wanted);
-
-/// The same of a simulation whose temperature is held, by five blocks or more, whose error is at
-/// least that of as many independent samples; unless a force drives a flow, or a solvent one.
-/// Fails: UNSTABLE with the numbers in the message; UNCONVERGED from 2.5 % on. Tested:
-/// test_thermodynamics.
-enum status mf_thermodynamics_assess_held(const struct thermodynamics_summary *summary,
-                                          const struct simulation_setup *setup) MUST_USE;
-
 /// A stricter look at what was fitted: one of the temperatures off by more than 2.5 % and three
 /// standard errors says that the potential and its time step do not belong together. Without
 /// friction the kinetic one must be near that of the setup, too, for which the target holds. Fails:

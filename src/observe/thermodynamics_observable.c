@@ -131,8 +131,8 @@ static enum status write(const void *state, const struct observable_results *res
                                       t->series.count);
 }
 
-/// Where nothing holds it, half as much again, or half of it, is not the temperature of the scene:
-/// nothing of the simulation is right. What is nearer is a warning.
+/// Half as much again, or half of it, is not the temperature of the scene: nothing of the
+/// simulation is right. What is nearer is a warning.
 static bool is_another(const struct thermodynamics_summary *s,
                        const struct simulation_setup *setup) {
     static const double factor = 1.5;
@@ -145,7 +145,6 @@ static bool is_another(const struct thermodynamics_summary *s,
 static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct thermodynamics *t = state;
     const struct thermodynamics_summary s = mf_thermodynamics_result(t, 1);
-    TRY(mf_thermodynamics_assess_held(&s, setup));
     const enum status status = mf_thermodynamics_assess(&s, setup);
     if (status == STATUS_UNSTABLE && !is_another(&s, setup))
         return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());

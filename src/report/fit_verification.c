@@ -120,7 +120,7 @@ void mf_fit_step_text(const struct verification *verification, const struct unit
 
 // The verification --------------------------------------------------------------------------------
 
-/// A kinetic temperature that is off by more than this may be why targets are missed.
+/// A kinetic temperature that is off by more than this is reported even if all targets agree.
 static const double hot = 0.05;
 
 /// Why the verification may differ from the samples of the fit: temperatures and how they depend on
@@ -227,13 +227,12 @@ static void report_structure(const char *name, const struct rdf_bins *bins,
              name, distance->rms, distance->noise, where, state, cause);
 }
 
-/// Whether the kinetic temperature is missed; the structure is then another, even within its noise.
+/// Whether the kinetic temperature is off; the structure is then another, even within its noise.
 static bool contradicts_temperature(const struct verification *verification, double temperature,
                                     const struct units *units, char reason[INVERSE_REASON_SIZE]) {
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     char kelvin[UNITS_NAME_SIZE], cause[FIT_STEP_TEXT_SIZE];
-    if (!verification->warning[0] ||
-        !mf_thermodynamics_missed(found->temperature, found->temperature_error, temperature))
+    if (!verification->warning[0] || !(fabs(found->temperature / temperature - 1) > hot))
         return false;
     mf_units_suffix(units, "T_0", kelvin);
     find_cause(verification, temperature, units, cause);

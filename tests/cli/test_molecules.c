@@ -325,13 +325,13 @@ static void test_a_snapshot_of_soft_bonds_is_no_stretched_one(void **state) {
         "  \"chain\": {\"type\": \"A\", \"length\": 8, \"bond\": \"spring\"}}},\n"
         "\"conservative\": {\"law\": \"soft-repulsion\"}, \"dissipative\": {\"law\": \"power\"},\n"
         "\"snapshots\": {\"every\": 100, \"formats\": [\"json\"]},\n"
-        "\"measure\": {\"equilibration\": 800, \"samples\": 5, \"every\": 20}}\n";
+        "\"measure\": {\"equilibration\": 100, \"samples\": 5, \"every\": 20}}\n";
     small_inputs_write(*state, "first.json", soft, NULL, NULL);
     RUN_PROGRAM(&result, "simulate", "first.json", "-o", "first");
     run_program_assert_code(&result, 0);
     small_inputs_write(*state, "second.json", soft, "\"box\"",
                        "\"particles\": {\"placement\": \"file\",\n"
-                       "  \"file\": \"first/snapshots/step_000000900.json\"}, \"box\"");
+                       "  \"file\": \"first/snapshots/step_000000200.json\"}, \"box\"");
     RUN_PROGRAM(&result, "simulate", "second.json", "-o", "second");
     run_program_assert_code(&result, 0);
 }

@@ -297,20 +297,20 @@ static void test_unstable_scene_ends_with_step_and_force(void **state) {
     assert_false(temporary_folder_exists("out/summary.json"));
 }
 
-/// Friction so strong that its steps leave the velocities right, and the positions cold.
-static const char cold_positions[] =
-    "{\"box\": [4.64, 4.64, 4.64], \"particles\": {\"count\": 300},\n"
-    "\"time_step\": 0.01, \"dynamics\": {\"integrator\": \"dpd-verlet\"},\n"
-    "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
-    "\"dissipative\": {\"law\": \"power\", \"sigma\": 14.142}, " SMALL_SCENES_LONG_MEASURE "}\n";
-
 /// Friction too large for the time step: the velocities look right, the structure is wrong.
 static void test_simulate_warns_when_only_the_kinetic_temperature_is_right(void **state) {
     static struct run_program_result result;
     small_scenes_write(*state, small_scenes_dpd, NULL, NULL);
     small_scenes_simulate(&result, "good");
     assert_null(strstr(result.err, "warning: the temperature"));
-    small_scenes_write(*state, cold_positions, NULL, NULL);
+    small_scenes_write(
+        *state,
+        "{\"box\": [4.64, 4.64, 4.64], \"particles\": {\"count\": 300},\n"
+        "\"time_step\": 0.01, \"dynamics\": {\"integrator\": \"dpd-verlet\"},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 14.142}, " SMALL_SCENES_LONG_MEASURE
+        "}\n",
+        NULL, NULL);
     small_scenes_simulate(&result, "out");
     assert_contains(result.err, "mesofit: warning: the temperature is 1.0");
     char *summary = temporary_folder_read("out/summary.json");
@@ -318,8 +318,7 @@ static void test_simulate_warns_when_only_the_kinetic_temperature_is_right(void 
     free(summary);
 }
 
-/// Steps that heat it by a tenth, or to twice its temperature; a quiet run tells that, and
-/// warnings.
+/// Steps that heat it to twice its temperature, which a quiet run tells as well, as a warning.
 static void test_simulate_is_not_ok_when_its_temperature_is_another(void **state) {
     static struct run_program_result result;
     small_scenes_write(*state, small_scenes_dpd, "0.04", "0.15");
@@ -329,10 +328,6 @@ static void test_simulate_is_not_ok_when_its_temperature_is_another(void **state
     results_assert_text("hot/summary.json", "status", "unconverged");
     small_scenes_write(*state, small_scenes_dpd, "0.04", "0.115");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "warm", "--quiet");
-    run_program_assert_code(&result, 1);
-    results_assert_text("warm/summary.json", "status", "unconverged");
-    small_scenes_write(*state, cold_positions, NULL, NULL);
-    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "cold", "--quiet");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "mesofit: warning: the temperature is ");
     assert_null(strstr(result.err, "steps"));

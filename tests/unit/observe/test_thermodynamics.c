@@ -228,45 +228,6 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
     fluid_clear(&fluid);
 }
 
-static void test_judge_of_a_simulation_sees_a_temperature_that_is_not_held(void **state) {
-    (void)state;
-    struct fluid fluid;
-    fluid_groot_warren(&fluid, 3000, 0.01);
-    struct thermodynamics_summary s = {
-        .blocks = 20, .temperature = 1.052, .temperature_error = 0.004};
-    assert_fails(mf_thermodynamics_assess_held(&s, &fluid.setup), STATUS_UNSTABLE,
-                 "5.2 % off with an error of 0.4 %");
-    s.temperature = 0.948;
-    assert_fails(mf_thermodynamics_assess_held(&s, &fluid.setup), STATUS_UNSTABLE, "-5.2 % off");
-    s.temperature = 0.97;
-    assert_fails(mf_thermodynamics_assess_held(&s, &fluid.setup), STATUS_UNCONVERGED, "-3.0 % off");
-    s.temperature = 0.948;
-    s.temperature_error = 0.02; // it may be chance
-    assert_ok(mf_thermodynamics_assess_held(&s, &fluid.setup));
-    s.temperature_error = 0.0001;
-    s.temperature = 1.02; // sure, and little
-    assert_ok(mf_thermodynamics_assess_held(&s, &fluid.setup));
-    s.temperature = 1.3;
-    s.blocks = 4;
-    assert_ok(mf_thermodynamics_assess_held(&s, &fluid.setup));
-    s.blocks = 5; // five samples of 40 beads are no nearer than 6 %
-    s.temperature = 1.2;
-    fluid.setup.placement.count = 40;
-    assert_ok(mf_thermodynamics_assess_held(&s, &fluid.setup));
-    s.temperature = 1.3;
-    assert_fails(mf_thermodynamics_assess_held(&s, &fluid.setup), STATUS_UNSTABLE, "error of 5.8");
-    s.blocks = 20;
-    const struct interaction_choice flow = {&mf_uniform_force, NULL};
-    fluid.setup.interaction[0] = flow;
-    fluid.setup.interactions = 1;
-    assert_ok(mf_thermodynamics_assess_held(&s, &fluid.setup));
-    fluid.setup.interactions = 0;
-    assert_fails(mf_thermodynamics_assess_held(&s, &fluid.setup), STATUS_UNSTABLE, "30.0 % off");
-    fluid.setup.omega = NULL; // and nothing else holds it
-    assert_ok(mf_thermodynamics_assess_held(&s, &fluid.setup));
-    fluid_clear(&fluid);
-}
-
 static void test_judge_of_a_fit_sees_a_few_percent(void **state) {
     (void)state;
     struct fluid fluid;
@@ -359,7 +320,6 @@ int main(void) {
         cmocka_unit_test(test_thermodynamics_errors_cover_the_truth_when_samples_are_independent),
         cmocka_unit_test(test_thermodynamics_errors_grow_when_samples_are_correlated),
         cmocka_unit_test(test_judge_tells_when_a_temperature_is_off),
-        cmocka_unit_test(test_judge_of_a_simulation_sees_a_temperature_that_is_not_held),
         cmocka_unit_test(test_judge_of_a_fit_sees_a_few_percent),
         cmocka_unit_test(test_thermodynamics_off_is_of_the_temperature_that_is_farther_off),
     };
