@@ -53,7 +53,7 @@ static enum status find_pair(const struct inverse_problem *problem, size_t pair,
 
 /// The density whose weight is that of the target.
 static const struct force_curve *find_density(const struct inverse_problem *problem) {
-    static const double same = 1e-6;
+    static const double same = 1e-4; // as scenes are compared with their targets
     const struct force_equations *const equations = problem->forces;
     const struct weighted_density_settings *const weight = mf_group_kind_density(&problem->targets);
     for (size_t n = 0; n < equations->curves; n++) {
@@ -218,15 +218,27 @@ static int count_densities(const struct inverse_problem *problem) {
     return found;
 }
 
-/// Without the forces of a density that is not looked for.
-static void choose_curves(const struct inverse_problem *problem, struct force_curve *curve,
-                          struct force_equations *equations) {
+static const struct many_body *find_many_body(const struct inverse_problem *problem) {
+    return mf_many_body_find(problem->scene.interaction, problem->scene.interactions);
+}
+
+/// Without the forces of a density in a scene that has none; pairs that are not looked for held.
+static enum status choose_curves(const struct inverse_problem *problem,
+                                 const struct potential_grid *grid, struct force_curve *curve,
+                                 struct force_equations *equations) {
     *equations = *problem->forces;
     equations->curve = curve;
     for (size_t n = 0; n < equations->curves; n++) {
         curve[n] = problem->forces->curve[n];
-        curve[n].left_out = curve[n].order == FORCES_OF_DENSITY && count_densities(problem) == 0;
+        curve[n].left_out = curve[n].order == FORCES_OF_DENSITY && find_many_body(problem) == NULL;
+        curve[n].held = curve[n].order == FORCES_OF_PAIRS;
     }
+    for (size_t a = 0; a < grid->pairs_known; a++) {
+        const struct force_curve *sought;
+        TRY(find_pair(problem, grid->known_point[a] / (grid->bins + 1), &sought));
+        curve[sought - problem->forces->curve].held = false;
+    }
+    return STATUS_OK;
 }
 
 static enum status weigh(struct reading *from) {
@@ -268,7 +280,7 @@ enum status mf_force_matching_find(const struct inverse_problem *problem,
     struct force_equations equations;
     struct reading from = {.problem = problem, .grid = grid, .equations = &equations};
     TRY_ARRAY(curve, problem->forces->curves);
-    choose_curves(problem, curve, &equations);
+    TRY(choose_curves(problem, grid, curve, &equations));
     const enum status status = find(&from, phi, error, found);
     mf_force_solution_clear(&from.solution);
     mf_memory_free(from.weight);
@@ -312,15 +324,28 @@ static enum status refuse_beyond(const struct inverse_problem *problem,
     return STATUS_OK;
 }
 
-/// Their forces would count as those of pairs.
-static enum status refuse_known_densities(const struct inverse_problem *problem) {
-    const struct many_body *const many_body =
-        mf_many_body_find(problem->scene.interaction, problem->scene.interactions);
-    if (many_body == NULL || many_body->terms == count_densities(problem))
-        return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "scene.many_body: the forces of a local density whose energy is known "
-                          "are not taken off those of the trajectory: leave its \"energy\" out");
+/// Forces of what is known would count as those of what is looked for.
+static enum status refuse_known(const struct inverse_problem *problem) {
+    const struct composition *const composition = &problem->scene.composition;
+    const struct many_body *const many_body = find_many_body(problem);
+    if (!problem->unknown[UNKNOWN_POTENTIAL].wanted)
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "scene.conservative: the forces of pairs whose law is known are not "
+            "taken off those of the trajectory: look for it, too, by \"unknowns\": "
+            "{\"potential\": {}} and a \"target.rdf\"");
+    if (many_body && many_body->terms != count_densities(problem))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "scene.many_body: the forces of a local density whose energy is "
+                              "known are not taken off those of the trajectory: leave its "
+                              "\"energy\" out");
+    for (int pair = 0; many_body && pair < mf_composition_pairs(composition); pair++)
+        if (!mf_targets_have_pair(&problem->targets, (size_t)pair))
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "target.rdf: forces tell the energy of a local density from "
+                                  "pairs only with the potentials of all pair types: give g(r) of "
+                                  "each");
+    return STATUS_OK;
 }
 
 static enum status create(void *memory, const struct inverse_method *method,
@@ -332,13 +357,24 @@ static enum status create(void *memory, const struct inverse_method *method,
                               "method.name: \"%s\" needs the forces of a trajectory: \"mesofit "
                               "measure --forces R\" keeps them in the folder that \"target\" names",
                               method->name);
-    TRY(refuse_known_densities(problem));
+    TRY(refuse_known(problem));
     state->problem = problem;
     TRY(mf_potential_grid_init(&state->grid, problem));
     TRY(refuse_beyond(problem, &state->grid));
     TRY_ARRAY(state->phi, state->grid.points);
     TRY_ARRAY(state->error, state->grid.points);
     return STATUS_OK;
+}
+
+/// Whether all that forces tell of is looked for, and nothing is as the scene has it.
+static bool finds_all(const struct force_matching *state) {
+    const struct force_equations *const equations = state->problem->forces;
+    size_t curves = (size_t)count_densities(state->problem), sought = 0;
+    for (size_t n = 0; n < equations->curves; n++)
+        curves += equations->curve[n].order != FORCES_OF_DENSITY;
+    for (size_t block = 0; block < state->grid.blocks; block++)
+        sought += state->grid.known_of[block] > 0;
+    return sought == curves;
 }
 
 static enum status iterate(void *memory, struct inverse_step *step,
@@ -361,9 +397,10 @@ static enum status iterate(void *memory, struct inverse_step *step,
         step->curve_error[UNKNOWN_BONDED] = state->error + state->grid.pair_points;
     }
     snprintf(step->reason, sizeof step->reason,
-             "%.*f %% of the mean square of the forces is that of these potentials; g(r) was not "
-             "fitted",
-             found.explained > 0.999 ? 4 : 1, 100 * found.explained);
+             "%.*f %% of the mean square of the forces is that of %s; g(r) was not fitted",
+             found.explained > 0.999 ? 4 : 1, 100 * found.explained,
+             finds_all(state) ? "these potentials"
+                              : "such potentials, with what the scene gives as the forces have it");
     return STATUS_OK;
 }
 

@@ -37,7 +37,7 @@ static double find_virial(const struct force_equations *equations, const double 
 
 /// Whether a curve makes up for the pressure: a bond would change its length, and leave it.
 static bool is_free(const struct force_curve *curve) {
-    return curve->order == FORCES_OF_PAIRS || curve->order == FORCES_OF_DENSITY;
+    return !curve->held && (curve->order == FORCES_OF_PAIRS || curve->order == FORCES_OF_DENSITY);
 }
 
 /// C w, w being that of free curves alone.

@@ -329,10 +329,18 @@ void mf_force_solution_clear(struct force_solution *solution) {
     *solution = (struct force_solution){0};
 }
 
+/// Beyond all its nodes a force goes on along the line of the last two, as in the equations: what
+/// this adds to a constant one, ∫ of its slope, for q so many nodes beyond.
+static void add_line(double *weight, size_t upper, size_t lower, double h, double beyond) {
+    weight[upper] += 0.5 * h * beyond * beyond;
+    weight[lower] -= 0.5 * h * beyond * beyond;
+}
+
 /// Add `sign` times the weights of ∫ of the force from the first known node to q.
 static void add_integral(const struct force_solution *solution, const struct force_curve *curve,
                          double q, double sign, double *weight) {
     const bool circle = force_curve_is_circle(curve);
+    const bool line = curve->order != FORCES_OF_PAIRS && !circle;
     const double h = sign * curve->width;
     size_t begin = 0, last = curve->nodes - 1;
     while (begin < last && !solution->known[curve->first + begin])
@@ -341,6 +349,8 @@ static void add_integral(const struct force_solution *solution, const struct for
         last--;
     last += circle;
     double at = (q - curve->low) / curve->width - (double)begin;
+    if (line && begin == 0 && at < 0)
+        add_line(weight, curve->first + 1, curve->first, h, at);
     double *node = weight + curve->first + begin;
     for (size_t k = begin; k < last && at > 0; k++, at--) {
         const double t = fmin(at, 1);
@@ -350,6 +360,8 @@ static void add_integral(const struct force_solution *solution, const struct for
         if (at <= 1)
             return;
     }
+    if (line && last + 1 == curve->nodes && at > 0)
+        add_line(weight, curve->first + last, curve->first + last - 1, h, at);
     *node += h * at;
 }
 

@@ -45,7 +45,8 @@ enum status mf_force_solution_meet(struct force_solution *solution,
 double mf_force_equations_share(const struct force_equations *equations, const double *c);
 
 /// ∫ of the force of a curve from `from` to `to`, as weights of c: shape [size], uncleared.
-/// Beyond the first and last known node the force goes on as there.
+/// Beyond the first and last known node the force goes on as there, of terms and densities beyond
+/// all nodes along the line of the last two.
 void mf_force_solution_integral(const struct force_solution *solution,
                                 const struct force_curve *curve, double from, double to,
                                 double *weight);

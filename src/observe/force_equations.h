@@ -39,7 +39,8 @@ struct force_curve {
     double inner_cutoff, cutoff; ///< of a density [λ]
     double low, width;           ///< the first node, and between two [λ], [rad], of a density 1
     size_t first, nodes;         ///< among all unknowns; a circle's last node is before its first
-    bool left_out;               ///< its forces are none: of a density that is not asked for
+    bool left_out;               ///< its forces are none: of a density in a scene without
+    bool held;                   ///< it is not looked for, and makes up for no pressure
 };
 
 /// Whether its last node is before its first.

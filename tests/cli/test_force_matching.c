@@ -377,6 +377,16 @@ static void test_an_energy_of_densities_comes_back(void **state) {
     assert_true(strstr(result.err, "100.0000 %") == NULL);
 }
 
+/// f alone, beside pairs whose law is known.
+static const char alone[] =
+    "{\"seed\": 1, \"units\": \"nm-ps\", \"method\": {\"name\": \"force-matching\"}, \"target\": "
+    "{\n"
+    "\"weighted_density\": {\"file\": \"weighted_density.tsv\", \"inner_cutoff\": 0.5, \"cutoff\": "
+    "1.2},\n"
+    "\"forces\": {\"file\": \"forces.tsv\", \"gram_file\": \"forces_gram.tsv\"}},\n"
+    "\"scene\": {\"density\": 3.05, \"particles\": {\"count\": 1000}, \"temperature\": 120.272,\n"
+    "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 18, \"cutoff\": 1}, " SOUGHT "}}}}";
+
 static void test_densities_that_cannot_be_matched_are_said(void **state) {
     (void)state;
     MEASURE_CROWD("--forces", "1.1");
@@ -386,6 +396,9 @@ static void test_densities_that_cannot_be_matched_are_said(void **state) {
                                "\"c2\": 0.1}}},");
     RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
     assert_measure_refused("scene.many_body: the forces of a local density whose energy is known");
+    write_text(alone, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_measure_refused("scene.conservative: the forces of pairs whose law is known");
     MEASURE("crowd/snapshots/trajectory.lammpstrj", "--molecules", "crowd.json", "--forces", "1.2");
     RUN_PROGRAM(&result, "measure", "crowd/snapshots/trajectory.lammpstrj", "--molecules",
                 "crowd.json", "--weighted-density", "0.5,1.2", "--static", "--temperature",

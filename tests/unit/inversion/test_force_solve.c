@@ -240,6 +240,29 @@ static void test_few_frames_tell_no_errors(void **state) {
     clear(gas);
 }
 
+/// The force of a term or density goes on along its last two nodes, in the equations and in their
+/// integral; that of pairs does not.
+static void test_forces_go_on_beyond_their_nodes(void **state) {
+    enum { NODES = 4 };
+    bool known[NODES] = {true, true, true, true};
+    const struct force_solution solution = {.size = NODES, .known = known};
+    const double from = -1.3, to = 9.1, low = 2, width = 1.5;
+    (void)state;
+    for (int order = 0; order < 2; order++) {
+        const struct force_curve curve = {
+            .order = order ? FORCES_OF_DENSITY : 0, .low = low, .width = width, .nodes = NODES};
+        double weight[NODES] = {0}, sum = 0, share;
+        size_t node, next;
+        mf_force_solution_integral(&solution, &curve, from, to, weight);
+        for (size_t k = 0; k < NODES; k++) // of a force 5 − 3 q
+            sum += weight[k] * (5 - 3 * (low + width * (double)k));
+        assert_true(fabs(sum - (5 * (to - from) - 1.5 * (to * to - from * from))) < 1e-10);
+        assert_true(mf_force_equations_find(&curve, to, &node, &next, &share));
+        assert_true(fabs((1 - share) * (double)node + share * (double)next - (to - low) / width) <
+                    1e-12);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_known_law_comes_back_within_its_errors),
@@ -247,6 +270,7 @@ int main(void) {
         cmocka_unit_test(test_virial_is_the_slope_of_the_energy),
         cmocka_unit_test(test_a_pressure_is_met),
         cmocka_unit_test(test_few_frames_tell_no_errors),
+        cmocka_unit_test(test_forces_go_on_beyond_their_nodes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
