@@ -124,8 +124,24 @@ static enum status check_intermolecular(const struct fit_file *fit, const char *
         file, fit->method->name, mf_methods_list(mf_methods_fits_any_target, others));
 }
 
-static enum status check_unknowns(const struct fit_file *fit, const char *file) {
+/// A target of its own that an inversion has no use for.
+static enum status fail_of_target(const struct fit_file *fit, const char *file, int kind) {
     char others[METHODS_TEXT_SIZE];
+    if (kind == mf_weighted_density_kind())
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: target.weighted_density.fitted: f is found from it where "
+            "\"scene.many_body\" has its weight, and no \"energy\"; \"no\" compares "
+            "it with the result",
+            file);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: target.%s.fitted: \"%s\" does not fit it; %s do, and \"no\" "
+                          "compares it with the result",
+                          file, mf_targets_name(kind), fit->method->name,
+                          mf_methods_list(mf_methods_fits_any_target, others));
+}
+
+static enum status check_unknowns(const struct fit_file *fit, const char *file) {
     for (int kind = 0; kind < UNKNOWNS; kind++)
         if (fit->unknown[kind].wanted &&
             !(unknown_is_omega(kind) ? fit->method->finds_omega : fit->method->finds_potential))
@@ -138,11 +154,7 @@ static enum status check_unknowns(const struct fit_file *fit, const char *file) 
         if (kind != TARGET_RDF && kind != TARGET_PRESSURE && kind != TARGET_DENSITY &&
             kind != mf_kirkwood_buff_kind() && !is_inverted(fit, kind) &&
             targets_ask(&fit->problem.targets, kind))
-            return mf_status_fail(STATUS_BAD_INPUT,
-                                  "%s: target.%s.fitted: \"%s\" does not fit it; %s do, and \"no\" "
-                                  "compares it with the result",
-                                  file, mf_targets_name(kind), fit->method->name,
-                                  mf_methods_list(mf_methods_fits_any_target, others));
+            return fail_of_target(fit, file, kind);
     if (fit->unknown[UNKNOWN_POTENTIAL].wanted && !fit->files.given[TARGET_RDF])
         return mf_status_fail(STATUS_BAD_INPUT, "%s: target.rdf is required to find a potential",
                               file);

@@ -180,10 +180,15 @@ static void print_interval(struct run *run, size_t count) {
                           every, interval);
 }
 
+/// Whether a bead is of several atoms, which bonds of fixed length may join to those of others.
+static bool joins_atoms(const struct run *run) {
+    return run->mapping.beads < run->mapping.atoms;
+}
+
 /// What frames that are read again would tell again.
 static void tell_first(struct run *run, size_t count) {
     print_interval(run, count);
-    if (run->request->measured.force_cutoff > 0 && run->mapping.broken)
+    if (run->request->measured.force_cutoff > 0 && run->mapping.broken && joins_atoms(run))
         mf_progress_print(&run->progress,
                           "mesofit: warning: --forces: beads are parts of their residues: bonds of "
                           "fixed length between them make their forces wrong; simulate the atoms "
