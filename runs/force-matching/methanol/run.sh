@@ -15,14 +15,8 @@ cp "$data/top/gromos43a1.ff/methanol216.gro" .
 "$gmx" solvate -cs methanol216.gro -box 3.3 3.3 3.3 -o start.gro
 printf '#include "gromos43a1.ff/forcefield.itp"\n#include "gromos43a1.ff/methanol.itp"\n[ system ]\nMethanol\n[ molecules ]\nMethanol %d\n' \
     $(($(sed -n 2p start.gro) / 3)) >topol.top
-at=start
-for stage in em npt nvt; do
-    "$gmx" grompp -f $stage.mdp -c $at.gro -p topol.top -o $stage.tpr -maxwarn 3
-    "$gmx" mdrun -deffnm $stage
-    at=$stage
-done
-"$mesofit" measure nvt.trr -s npt.gro --map map.json --forces 1.2 --range 1.2 --static --q-range 0 \
-    --temperature 300 -o target --force
-MESOFIT=$mesofit sh ../../fits.sh target 576 1.2
+export MESOFIT="$mesofit" GMX="$gmx"
+sh ../../atoms.sh 1.2
+sh ../../fits.sh target 576 1.2
 cd ..
 gnuplot -d -e 'liquid = "methanol"; low = 0.25; range = 1.2; depth = 1.2; top = 2.2; off = 0.1' ../liquid.gp

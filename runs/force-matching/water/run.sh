@@ -15,14 +15,8 @@ cd out
 beads=$(($(sed -n 2p start.gro) / 3))
 printf '#include "oplsaa.ff/forcefield.itp"\n#include "oplsaa.ff/spce.itp"\n[ system ]\nWater\n[ molecules ]\nSOL %d\n' \
     $beads >topol.top
-at=start
-for stage in em npt nvt; do
-    "$gmx" grompp -f $stage.mdp -c $at.gro -p topol.top -o $stage.tpr -maxwarn 3
-    "$gmx" mdrun -deffnm $stage
-    at=$stage
-done
-"$mesofit" measure nvt.trr -s npt.gro --map map.json --forces 1 --range 1 --static --q-range 0 \
-    --temperature 300 -o target --force
-MESOFIT=$mesofit sh ../../fits.sh target $beads 1
+export MESOFIT="$mesofit" GMX="$gmx"
+sh ../../atoms.sh 1
+sh ../../fits.sh target $beads 1
 cd ..
 gnuplot -d -e 'liquid = "water"; low = 0.2; range = 1; depth = 1.5; top = 3.3; off = 0.6' ../liquid.gp
