@@ -340,7 +340,8 @@ static enum status refuse_known(const struct inverse_problem *problem) {
                               "known are not taken off those of the trajectory: leave its "
                               "\"energy\" out");
     for (int pair = 0; many_body && pair < mf_composition_pairs(composition); pair++)
-        if (!mf_targets_have_pair(&problem->targets, (size_t)pair))
+        if (mf_composition_has_pairs(composition, pair) &&
+            !mf_targets_have_pair(&problem->targets, (size_t)pair))
             return mf_status_fail(STATUS_BAD_INPUT,
                                   "target.rdf: forces tell the energy of a local density from "
                                   "pairs only with the potentials of all pair types: give g(r) of "

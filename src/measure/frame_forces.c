@@ -83,10 +83,12 @@ static void add(const struct work *work, size_t bead, const struct force_curve *
 static void add_density(const struct work *work, size_t i, size_t j, double square,
                         const double way[3], double sign) {
     const struct frame_forces_plan *const plan = work->plan;
+    const double stress = sign * weighted_density_stress(plan->weight, square);
+    if (stress == 0)
+        return;
     const struct force_curve *const curve =
         &plan->equations.curve[curve_of_group(plan, FORCES_OF_DENSITY, 0)];
-    const double stress = sign * weighted_density_stress(plan->weight, square);
-    for (int own = 0; stress != 0 && own < 2; own++) {
+    for (int own = 0; own < 2; own++) {
         const double density = work->forces->density[own ? i : j];
         add(work, i, curve, density, way, -stress / square, 0.5 * stress);
         add(work, j, curve, density, way, stress / square, 0.5 * stress);
