@@ -369,12 +369,15 @@ static enum status create(void *memory, const struct inverse_method *method,
 
 /// Whether all that forces tell of is looked for, and nothing is as the scene has it.
 static bool finds_all(const struct force_matching *state) {
+    const struct composition *const composition = &state->problem->scene.composition;
     const struct force_equations *const equations = state->problem->forces;
     size_t curves = (size_t)count_densities(state->problem), sought = 0;
     for (size_t n = 0; n < equations->curves; n++)
         curves += equations->curve[n].order != FORCES_OF_DENSITY;
     for (size_t block = 0; block < state->grid.blocks; block++)
         sought += state->grid.known_of[block] > 0;
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++)
+        curves -= !mf_composition_has_pairs(composition, pair);
     return sought == curves;
 }
 
