@@ -171,6 +171,19 @@ static void print_pairs(struct progress *progress, const struct measure_result *
                           measured->plan.waves.q_maximum, (long long)measured->plan.waves.waves);
 }
 
+/// What is kept of forces: memory for all blocks, however many frames there are.
+static void print_forces(struct progress *progress, const struct measure_result *result) {
+    const struct force_equations *const equations = &result->measured->forces.equations;
+    const size_t numbers = force_equations_entries(equations) + 2 * equations->size;
+    if (equations->size > 0)
+        mf_progress_print(progress,
+                          "forces: %zu unknowns of %zu curve%s, in %zu blocks of %zu frames; their "
+                          "equations take %.2g MB, however many the frames",
+                          equations->size, equations->curves, equations->curves > 1 ? "s" : "",
+                          force_equations_blocks(equations), equations->each,
+                          1e-6 * (double)(FORCES_BLOCKS * numbers * sizeof(double)));
+}
+
 /// A temperature that is given, and that of the velocities: they are those of whole beads, so that
 /// constraints within beads do no harm, but those between beads make it too low.
 static void print_temperature(struct progress *progress, const struct measure_result *result) {
@@ -239,6 +252,7 @@ static void print_all(struct progress *progress, const struct measure_result *re
                                 "bonds, angles and dihedrals are");
     if (!measured->in_vacuum)
         print_pairs(progress, result);
+    print_forces(progress, result);
     if (measured->pairs.molecule && result->kinds == NULL)
         mf_progress_print(
             progress,

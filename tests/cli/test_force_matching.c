@@ -169,6 +169,7 @@ static void test_chains_come_back_with_all_their_terms(void **state) {
     (void)state;
     MEASURE(DUMP, "--molecules", "scene.json", "--forces", "1.2");
     run_program_assert_code(&result, 0);
+    assert_contains(result.err, "of 6 curves, in 16 blocks of 4 frames; their equations take");
     write_run(NULL, NULL);
     RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
     run_program_assert_code(&result, 0);
