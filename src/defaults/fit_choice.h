@@ -67,6 +67,11 @@ enum status mf_fit_choice_give_omega(const struct fit_choice *choice, const char
 /// infinite without.
 double mf_fit_defaults_stiff_step(const struct fit_choice *choice);
 
+/// The angular frequency of the fastest of them [1/τ], and the steps of theirs that a longer one of
+/// the pairs is cut into, for the same error (dynamics/respa.h).
+double mf_fit_defaults_fastest(const struct fit_choice *choice);
+int64_t mf_fit_defaults_inner_steps(const struct fit_choice *choice, double time_step);
+
 /// The time step of dynamics without velocities whose variance in a well of that curvature
 /// [k_B T_0/λ²] is wrong by the allowed share [τ].
 double mf_fit_defaults_relaxing_step(const struct fit_choice *choice, double curvature,

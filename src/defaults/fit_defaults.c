@@ -212,6 +212,53 @@ static bool moves_elsewhere(const struct fit_choice *c) {
     return mf_fit_engine_knows_more(c->fit) && mf_fit_engine_verifies(c->fit);
 }
 
+/// Whether bonds, angles and dihedrals may have steps of their own: where nothing is said of
+/// dynamics, and all is simulated here.
+static bool may_have_inner_steps(const struct fit_choice *c) {
+    const struct scene_given *given = &c->fit->scene.given;
+    return !given->dynamics && !given->time_step && c->fit->engine.kind == ENGINE_NONE &&
+           !says_verification(c->fit, "time_step");
+}
+
+/// A step of the pairs in which molecules take several: their impulses resonate with half a period
+/// of the fastest bond, Ω Δt = π, and stay far from it (docs/figures.md, time steps).
+static double choose_inner_steps(struct fit_choice *c, double of_pairs, double stiff) {
+    static const double turn = 0.9;
+    const double longest = turn / mf_fit_defaults_fastest(c);
+    const double step = fit_interval(c, fmin(of_pairs, longest));
+    if (!may_have_inner_steps(c) || step <= stiff)
+        return fit_interval(c, fmin(of_pairs, stiff));
+    c->fit->inner_steps = mf_fit_defaults_inner_steps(c, step);
+    return step;
+}
+
+/// How the step was chosen.
+static void note_time_step(const struct fit_choice *c, double bound, double free, double stiff) {
+    char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_text(c, "tau", c->time_step, step);
+    mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
+    mf_fit_choice_text(c, "lambda", c->scales.curvature_at, at);
+    if (c->fit->inner_steps > 0)
+        mf_fit_choice_note(c,
+                           "time step %s, in which bonds, angles and dihedrals take %lld of their "
+                           "own: their distributions are to be right within 0.3 %% of their "
+                           "variance",
+                           step, (long long)c->fit->inner_steps);
+    else if (stiff <= fmin(free, bound))
+        mf_fit_choice_note(c,
+                           "time step %s: the distributions of bonds and angles are to be right "
+                           "within 0.3 %% of their variance",
+                           step);
+    else if (bound < free)
+        mf_fit_choice_note(c,
+                           "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
+                           "configurational temperature is to be right within 1 %%",
+                           step, curvature, at);
+    else
+        mf_fit_choice_note(
+            c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
+}
+
 /// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
 /// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
 /// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
@@ -221,7 +268,7 @@ static void choose_time_step(struct fit_choice *c) {
     static const double allowed = 0.01, way = 0.02;
     const bool has_velocities = c->fit->scene.setup.integrator->mobility == NULL;
     const double stiff = mf_fit_defaults_stiff_step(c);
-    const double free = fmin((has_velocities ? way : way * way) * c->crossing, stiff);
+    const double free = (has_velocities ? way : way * way) * c->crossing;
     const double curvature_of_pair = 2 * c->scales.curvature;
     const double bound = has_velocities
                              ? sqrt(4 * allowed * c->mass / curvature_of_pair)
@@ -229,30 +276,13 @@ static void choose_time_step(struct fit_choice *c) {
     double *const time_step = &c->fit->scene.setup.time_step;
     c->time_step = *time_step;
     if (c->fit->scene.given.time_step) {
-        doubt_time_step(c, fmin(free, bound));
+        doubt_time_step(c, fmin(fmin(free, stiff), bound));
         return;
     }
-    c->time_step = fit_interval(c, fmin(free, bound));
+    c->time_step = choose_inner_steps(c, fmin(free, bound), stiff);
     *time_step = mf_fit_choice_number(c, "scene", mf_scene_fields, "time_step", c->time_step);
-    if (moves_elsewhere(c))
-        return;
-    char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
-    mf_fit_choice_text(c, "tau", c->time_step, step);
-    mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
-    mf_fit_choice_text(c, "lambda", c->scales.curvature_at, at);
-    if (bound < free)
-        mf_fit_choice_note(c,
-                           "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
-                           "configurational temperature is to be right within 1 %%",
-                           step, curvature, at);
-    else if (free == stiff)
-        mf_fit_choice_note(c,
-                           "time step %s: the distributions of bonds and angles are to be right "
-                           "within 0.3 %% of their variance",
-                           step);
-    else
-        mf_fit_choice_note(
-            c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
+    if (!moves_elsewhere(c))
+        note_time_step(c, bound, free, stiff);
 }
 
 /// In the core, where no pair is seen, the potential goes on bending up more than it does where

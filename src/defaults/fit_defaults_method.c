@@ -170,19 +170,33 @@ double mf_fit_defaults_relaxing_step(const struct fit_choice *c, double curvatur
     return share / (curvature * setup->integrator->mobility(setup));
 }
 
-double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
-    static const double allowed = 0.003;
-    // Friction is chosen later, and then aboba is the default.
-    const struct integrator *integrator =
-        c->fit->scene.given.dynamics ? c->fit->scene.setup.integrator : &mf_aboba;
+/// What the variance of a bond may be wrong by.
+static const double allowed_of_bonds = 0.003;
+
+double mf_fit_defaults_fastest(const struct fit_choice *c) {
     const struct molecules *molecules = &c->fit->scene.molecules.molecules;
     const double length = shortest_bond(c);
     double fastest = 0;
     for (int order = 0; order < BONDED_KINDS; order++)
         for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
             fastest = fmax(fastest, fastest_of(c, order, g, length));
-    return integrator->mobility ? mf_fit_defaults_relaxing_step(c, c->mass * fastest, allowed)
-                                : sqrt(allowed / (mf_hybrid_step_wrong(integrator) * fastest));
+    return sqrt(fastest);
+}
+
+double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
+    // Friction is chosen later, and then aboba is the default.
+    const struct integrator *integrator =
+        c->fit->scene.given.dynamics ? c->fit->scene.setup.integrator : &mf_aboba;
+    const double fastest = mf_fit_defaults_fastest(c);
+    return integrator->mobility
+               ? mf_fit_defaults_relaxing_step(c, c->mass * fastest * fastest, allowed_of_bonds)
+               : sqrt(allowed_of_bonds / mf_hybrid_step_wrong(integrator)) / fastest;
+}
+
+int64_t mf_fit_defaults_inner_steps(const struct fit_choice *c, double time_step) {
+    const double step = sqrt(allowed_of_bonds / mf_hybrid_step_wrong(&mf_velocity_verlet));
+    return 2 *
+           (int64_t)ceil(time_step * mf_fit_defaults_fastest(c) / (2 * step)); // as aboba has it
 }
 
 enum status mf_fit_defaults_take_method(struct fit_choice *c, const struct inverse_method *method) {

@@ -190,7 +190,7 @@ static enum status take_constraints(struct fit_file *fit, const struct reading *
 /// What follows from the choices.
 static enum status complete(struct fit_file *fit, struct json_object *root) {
     struct json_object scene = mf_json_child(root, "scene", true);
-    TRY(mf_scene_complete(&fit->scene, &scene, fit->integrator));
+    TRY(mf_scene_complete(&fit->scene, &scene, fit->integrator, fit->inner_steps));
     if (fit->method == NULL)
         mf_json_child(root, "method", true);
     const struct target_scene about = target_scene_of(fit);

@@ -76,6 +76,7 @@ struct fit_file {
     struct target_files files;
     struct scene scene;
     const struct integrator *integrator; ///< that was chosen for the scene; or NULL
+    int64_t inner_steps;                 ///< that were chosen for it; or 0
     bool says_unknowns;                  ///< the file does
     struct fit_unknown unknown[UNKNOWNS];
     struct bonded_shape shape[BONDED_KINDS][MOLECULES_MAX_GROUPS]; ///< of groups to be found

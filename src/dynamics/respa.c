@@ -120,11 +120,27 @@ enum status mf_respa_step(struct respa *respa, struct simulation *simulation, in
     return STATUS_OK;
 }
 
-bool mf_respa_acts(const struct simulation_setup *setup) {
-    const void *parameters = setup->integrator_parameters;
-    const struct field *field = setup->integrator->fields;
-    while (field->name && strcmp(field->name, "inner_steps") != 0)
+/// Where they are in the parameters; NULL in those of an integrator without.
+static int64_t *find_field(const struct integrator *integrator, const void *parameters) {
+    const struct field *field = integrator->fields;
+    while (field && field->name && strcmp(field->name, "inner_steps") != 0)
         field++;
-    return parameters && field->name &&
-           *(const int64_t *)((const char *)parameters + field->offset) > 1;
+    return parameters && field && field->name ? (int64_t *)((char *)parameters + field->offset)
+                                              : NULL;
+}
+
+int64_t mf_respa_inner_steps(const struct integrator *integrator, const void *parameters) {
+    const int64_t *const inner_steps = find_field(integrator, parameters);
+    return inner_steps ? *inner_steps : 1;
+}
+
+bool mf_respa_set(const struct integrator *integrator, void *parameters, int64_t inner_steps) {
+    int64_t *const field = find_field(integrator, parameters);
+    if (field)
+        *field = inner_steps;
+    return field != NULL;
+}
+
+bool mf_respa_acts(const struct simulation_setup *setup) {
+    return mf_respa_inner_steps(setup->integrator, setup->integrator_parameters) > 1;
 }

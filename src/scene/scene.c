@@ -290,13 +290,13 @@ enum status mf_scene_read(struct scene *scene, struct json_object *object, int u
 }
 
 enum status mf_scene_complete(struct scene *scene, struct json_object *object,
-                              const struct integrator *integrator) {
+                              const struct integrator *integrator, int64_t inner_steps) {
     struct table *const omega = &scene->omega.table;
     mf_scene_particles_complete(scene, object);
     if (scene->omega.curves > 0 && omega->curves == 0)
         TRY(mf_scene_law_tabulate(&scene->omega, mf_table_init_omega));
     lend_laws(scene);
-    return mf_scene_dynamics_complete(scene, object, integrator);
+    return mf_scene_dynamics_complete(scene, object, integrator, inner_steps);
 }
 
 static void clear_interactions(struct scene_interactions *interactions) {

@@ -62,9 +62,10 @@ void mf_scene_clear(struct scene *scene);
 /// Let follow what does from a count of beads, a friction law or an unknown that were chosen after
 /// the scene was read: composition and box, table, integrator. Faults as in mf_scene_read, such as
 /// of a count that nobody has chosen. Fails: NO_MEMORY.
-/// @param[in] integrator  that was chosen, or NULL: the file's, or the usual one
+/// @param[in] integrator   that was chosen, or NULL: the file's, or the usual one
+/// @param[in] inner_steps  that were chosen for it, or 0: the file's
 enum status mf_scene_complete(struct scene *scene, struct json_object *object,
-                              const struct integrator *integrator) MUST_USE;
+                              const struct integrator *integrator, int64_t inner_steps) MUST_USE;
 
 /// Mass of the beads over the volume of the box [g/cm³], for a scene of three dimensions with
 /// units.

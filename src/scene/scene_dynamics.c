@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/names.h"
+#include "dynamics/respa.h"
 
 NAMED_RECORD(struct integrator);
 
@@ -151,12 +152,14 @@ enum status mf_scene_dynamics_read(struct scene *scene, struct json_object *obje
 }
 
 enum status mf_scene_dynamics_complete(struct scene *scene, struct json_object *object,
-                                       const struct integrator *integrator) {
+                                       const struct integrator *integrator, int64_t inner_steps) {
     if (integrator == NULL && !scene->given.dynamics)
         integrator = usual_integrator(scene);
-    if (integrator == NULL || integrator == scene->setup.integrator)
-        return STATUS_OK;
-    TRY(take_integrator(scene, integrator));
-    check_integrator(scene, object);
+    if (integrator && integrator != scene->setup.integrator) {
+        TRY(take_integrator(scene, integrator));
+        check_integrator(scene, object);
+    }
+    if (inner_steps > 0)
+        mf_respa_set(scene->setup.integrator, scene->integrator_parameters, inner_steps);
     return STATUS_OK;
 }

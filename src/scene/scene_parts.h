@@ -26,9 +26,11 @@ void mf_scene_particles_digest(const struct scene *scene, uint64_t *digest);
 enum status mf_scene_dynamics_read(struct scene *scene, struct json_object *object) MUST_USE;
 
 /// Take an integrator that was chosen, or, if that is NULL and the file names none, the usual one
-/// of a scene to which friction came. Faults and failures are the same.
+/// of a scene to which friction came; with inner steps that were chosen for it, unless they are 0.
+/// Faults and failures are the same.
 enum status mf_scene_dynamics_complete(struct scene *scene, struct json_object *object,
-                                       const struct integrator *integrator) MUST_USE;
+                                       const struct integrator *integrator,
+                                       int64_t inner_steps) MUST_USE;
 
 /// @name Masses, radii and so on of the particles: numbers, ranges, columns of a file
 /// Read those members of "particles" that are attributes; the types must be known. Faults go to the

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "defaults/fit_defaults.h"
 
+#include "dynamics/respa.h"
 #include "inversion/inversion.h"
 #include "inversion/inversions.h"
 #include "matching/matchings.h"
@@ -205,6 +206,35 @@ static void test_fit_defaults_choose_how_many_beads_beside_a_method(void **state
     assert_int_equal(fit.choices.count, 1);
     assert_int_equal(fit.scene.setup.placement.count, 1000);
     mf_fit_file_clear(&fit);
+}
+
+/// Dimers whose spring of k = 4e4 makes ω = sqrt(2 k/m): steps of Verlet's integrator make the
+/// variance wrong by (ω Δt)²/4, and impulses of pairs resonate with it where ω Δt is π.
+static void test_fit_defaults_cut_the_steps_of_pairs_for_bonds(void **state) {
+    static const char *const said[] = {"", ", \"time_step\": 0.01",
+                                       ", \"dynamics\": {\"integrator\": \"velocity-verlet\"}"};
+    const double omega = sqrt(2 * 4e4);
+    write_target(state, 0.002);
+    for (int k = 0; k < 3; k++) {
+        struct fit_file fit;
+        char text[2048];
+        snprintf(
+            text, sizeof text,
+            TARGET
+            "\"scene\": {\"box\": [9.1, 9.1, 9.1]%s, \"bonds\": {\"stiff\": {\"law\": "
+            "\"harmonic\", \"k\": 4e4, \"length\": 0.5}}, \"molecules\": {\"dimer\": "
+            "{\"count\": 113, \"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": \"stiff\"}}}}}",
+            said[k]);
+        assert_ok(read_run(state, &fit, "run.json", text));
+        const struct simulation_setup *const setup = &fit.scene.setup;
+        const int64_t inner = mf_respa_inner_steps(setup->integrator, setup->integrator_parameters);
+        const double turn = omega * setup->time_step / (double)inner;
+        print_message("step %g of %lld: %g of the variance\n", setup->time_step, (long long)inner,
+                      turn * turn / 4);
+        assert_true(k == 0 ? inner > 3 && omega * setup->time_step <= 1 : inner == 1);
+        assert_true(k == 1 || turn * turn / 4 < 0.0031);
+        mf_fit_file_clear(&fit);
+    }
 }
 
 /// A bead without velocities relaxes in γ/2Φ'', which a step of Euler's must stay far below, and
@@ -442,6 +472,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_friction_and_time_step_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_how_many_beads_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_no_count_beside_a_file_of_places),
+        IN_FOLDER(test_fit_defaults_cut_the_steps_of_pairs_for_bonds),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
