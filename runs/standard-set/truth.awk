@@ -24,7 +24,7 @@ function law(pair, r) {
     if (member == "argon")
         return r < 8.5125 ? lennard_jones(r, 0.238065, 3.405) - lennard_jones(8.5125, 0.238065, 3.405) : 0
     if (member == "polymer-solvent")
-        return r < 1 ? (pair == "P-S" ? 22 : 25) / 2 * (1 - r) ^ 2 : 0
+        return r < 1 ? (pair == "S-P" ? 22 : 25) / 2 * (1 - r) ^ 2 : 0
     if (member == "mixture-sizes-repulsive")
         return repulsive(r, pair == "A-A" ? 1 : pair == "A-B" ? 1.3 : 1.6)
     if (member == "kremer-grest" || member == "ring-melt")
