@@ -93,6 +93,17 @@ static void find_margins(struct bonded_grid *grid) {
     grid->points = grid->below + grid->known + above;
 }
 
+/// Whether the potentials of all pair types are looked for: one that the scene gives takes no part
+/// of the slope of f, which is then known by it.
+static bool finds_all_pairs(const struct inverse_problem *problem) {
+    const struct composition *const composition = &problem->scene.composition;
+    bool all = problem->unknown[UNKNOWN_POTENTIAL].wanted;
+    for (int pair = 0; all && pair < mf_composition_pairs(composition); pair++)
+        all = mf_targets_have_pair(&problem->targets, (size_t)pair) ||
+              !mf_composition_has_pairs(composition, pair);
+    return all;
+}
+
 enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_problem *problem,
                                 const struct bonded_unknown *unknown) {
     const char *kind = mf_group_kind_name(unknown->order),
@@ -103,8 +114,7 @@ enum status mf_bonded_grid_init(struct bonded_grid *grid, const struct inverse_p
             problem->targets.target[mf_group_kind_target(unknown->order)].value + unknown->first,
         .temperature = problem->scene.temperature,
         .dimensions = problem->scene.box.dimensions,
-        .is_level =
-            unknown->order == INVERSE_LOCAL_DENSITY && problem->unknown[UNKNOWN_POTENTIAL].wanted};
+        .is_level = unknown->order == INVERSE_LOCAL_DENSITY && finds_all_pairs(problem)};
     find_known(grid, problem);
     find_margins(grid);
     if (is_periodic(grid) &&

@@ -24,7 +24,7 @@ struct bonded_grid {
     size_t seen_first, seen;              ///< those of them that this target has seen
     size_t below;                         ///< points before the first known one
     size_t points;                        ///< of all
-    bool is_level; ///< f of densities beside a potential of pairs, which has its slope
+    bool is_level; ///< f of densities beside potentials of all pairs, which have its slope
 };
 
 /// @param[in] unknown  one of the problem's

@@ -4,7 +4,10 @@
 #include "problem/potential_grid.h"
 
 #include "curves/formula.h"
+#include "forces/many_body.h"
+#include "observe/weighted_density.h"
 #include "shared/is_close.h"
+#include "shared/many_bodies.h"
 #include "shared/testing.h"
 
 #include <math.h>
@@ -187,6 +190,44 @@ static void test_potential_grid_virials_of_a_block_act_on_its_own_bins(void **st
     mf_potential_grid_clear(&grid);
 }
 
+/// f − sρ with Φ + 2s w is the same energy only if all pairs get their part of it: beside a law
+/// that the scene gives, the slope of f is f's own.
+static void test_potential_grid_shares_the_slope_of_f_with_all_pairs_or_none(void **state) {
+    enum { RHO_BINS = 20 };
+    static const struct weighted_density_settings weight = {0.5, 1.2, RHO_BINS, RHO_BINS};
+    (void)state;
+    double target[PAIRS * BINS], rho[RHO_BINS], p[RHO_BINS];
+    struct potential_grid grid;
+    struct inverse_problem problem;
+    struct many_body law;
+    const int kind = mf_weighted_density_kind();
+    make_target(target);
+    problem = make_problem(target);
+    for (int k = 0; k < RHO_BINS; k++) {
+        rho[k] = k + 0.5;
+        p[k] = exp(-pow((rho[k] - 10) / 4, 2));
+    }
+    many_bodies_crowd(&law, weight.inner_cutoff, weight.cutoff, 0, 0, &problem.scene.composition);
+    problem.scene.interaction[problem.scene.interactions++] =
+        (struct interaction_choice){&mf_many_body, &law};
+    problem.targets.target[kind] = (struct target){RHO_BINS, p, .x = rho};
+    problem.targets.settings[mf_observable_kind(kind).place] = &weight;
+    problem.unknown[UNKNOWN_POTENTIAL].wanted = problem.unknown[UNKNOWN_BONDED].wanted = true;
+    problem.group[problem.bonded++] =
+        (struct bonded_unknown){.order = INVERSE_LOCAL_DENSITY, .bins = {0, 1, RHO_BINS}};
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_true(grid.group[0].own.is_level);
+    assert_non_null(grid.shared.change);
+    mf_potential_grid_clear(&grid);
+    for (size_t k = 0; k < BINS; k++)
+        target[BINS + k] = NAN; // A-B is not looked for
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_false(grid.group[0].own.is_level);
+    assert_null(grid.shared.change);
+    mf_potential_grid_clear(&grid);
+    mf_many_body_clear(&law);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_potential_grid_has_a_core_for_each_pair_type),
@@ -196,6 +237,7 @@ int main(void) {
             test_potential_grid_starts_each_pair_type_from_its_curve_or_the_mean_force),
         cmocka_unit_test(test_potential_grid_table_goes_through_the_points_of_each_pair_type),
         cmocka_unit_test(test_potential_grid_virials_of_a_block_act_on_its_own_bins),
+        cmocka_unit_test(test_potential_grid_shares_the_slope_of_f_with_all_pairs_or_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
