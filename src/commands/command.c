@@ -10,6 +10,7 @@
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const struct command_option mf_command_common[] = {
     {"-o", "DIR",
@@ -118,14 +119,39 @@ static enum status parse_option(const struct command *command, const char *word,
     return STATUS_OK;
 }
 
+/// The option of the subcommand that takes a value and whose name begins as this word does.
+static const struct command_option *find_longer(const struct command *command, const char *word) {
+    for (const struct command_option *own = command->options; own && own->name; own++)
+        if (own->value && strncmp(own->name, word, strlen(word)) == 0)
+            return own;
+    return NULL;
+}
+
+/// A number behind an option that takes none was meant for another, unless a file has that name.
+static enum status refuse_number(const struct command *command, const char *word,
+                                 const char *next) {
+    char *end = NULL;
+    if (next == NULL || (strtod(next, &end), end == next) || *end || access(next, F_OK) == 0)
+        return STATUS_OK;
+    const struct command_option *const meant = find_longer(command, word);
+    if (meant == NULL)
+        return mf_status_fail(STATUS_BAD_INPUT, "%s takes no value, and there is no file %.60s",
+                              word, next);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s takes no value such as %.60s: did you mean %s%s%s?",
+                          word, next, meant->name, meant->value[0] == '[' ? "" : " ", meant->value);
+}
+
 static enum status parse_words(const struct command *command, size_t count,
                                const char *const *words, struct command_line *line) {
     for (size_t k = 0; k < count;) {
         int used = 1;
-        if (words[k][0] == '-')
-            TRY(parse_option(command, words[k], k + 1 < count ? words[k + 1] : NULL, line, &used));
-        else
+        const char *const next = k + 1 < count ? words[k + 1] : NULL;
+        if (words[k][0] != '-')
             line->files[line->file_count++] = words[k];
+        else
+            TRY(parse_option(command, words[k], next, line, &used));
+        if (words[k][0] == '-' && used == 1)
+            TRY(refuse_number(command, words[k], next));
         k += (size_t)used;
     }
     return STATUS_OK;
