@@ -5,10 +5,6 @@
 
 #include <math.h>
 
-/// The scatter of s is that over so many ranges, from this part of the bins on to all of them.
-enum { RANGES = 16 };
-static const double shortest_range = 0.7;
-
 /// Of N: a larger s is no small correction.
 static const double max = 0.05;
 
@@ -63,25 +59,6 @@ double mf_finite_size_rigid(const struct finite_size_fluid *fluid, int pair) {
     return 1 + all * (fluctuation - self) / ordered_pairs(composition, type);
 }
 
-/// s = 1 + ρG by all bins, and the variance of it.
-static double measure(const struct rdf_bins *bins, const double *g, const double *error,
-                      const struct box *box, size_t particles, double inside, double *variance) {
-    const struct kirkwood_buff whole =
-        mf_kirkwood_buff_integrate(bins, g, error, box, particles, inside);
-    double squares = 0;
-    for (int k = 0; k < RANGES; k++) {
-        const double part = shortest_range + (1 - shortest_range) * k / RANGES;
-        struct rdf_bins fewer = *bins;
-        fewer.count = (size_t)ceil(part * (double)bins->count);
-        squares += pow(
-            mf_kirkwood_buff_integrate(&fewer, g, error, box, particles, inside).compressibility -
-                whole.compressibility,
-            2);
-    }
-    *variance = squares / RANGES + whole.compressibility_error * whole.compressibility_error;
-    return whole.compressibility;
-}
-
 /// The least s of a pair type: fluctuations of a number, 1 + ρ_a G_aa, are not negative.
 static double min(const struct composition *composition, int pair) {
     int type[2];
@@ -97,14 +74,15 @@ double mf_finite_size_factor_of(const struct rdf_bins *bins, const double *g, co
     if (from == to)
         return 1;
     const double rigid = mf_finite_size_rigid(fluid, pair);
-    double s = rigid, variance;
+    double s = rigid;
     if (fluid->box->dimensions == 3) {
         const double share = from / (double)mf_composition_particles(fluid->composition);
         const struct box measured = mf_box_scaled(fluid->box, share);
         const double inside = mf_finite_size_intramolecular(fluid, pair);
-        const double seen =
-            fmax(measure(bins, g, error, &measured, (size_t)from, inside, &variance),
-                 min(fluid->composition, pair));
+        const struct kirkwood_buff kb =
+            mf_kirkwood_buff_of_range(bins, g, error, &measured, (size_t)from, inside);
+        const double variance = kb.compressibility_error * kb.compressibility_error;
+        const double seen = fmax(kb.compressibility, min(fluid->composition, pair));
         const double away = seen - rigid;
         if (variance < away * away && fabs(seen) < max * from)
             s = rigid + (away - variance / away);

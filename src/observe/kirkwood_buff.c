@@ -43,6 +43,47 @@ struct kirkwood_buff mf_kirkwood_buff_integrate(const struct rdf_bins *bins, con
                                   .compressibility_error = density * integral_error};
 }
 
+/// The scatter of G is that over so many ranges, from this part of the bins on to all of them.
+enum { RANGES = 16 };
+static const double shortest_range = 0.7;
+
+struct kirkwood_buff mf_kirkwood_buff_of_range(const struct rdf_bins *bins, const double *g,
+                                               const double *error, const struct box *box,
+                                               size_t count, double inside) {
+    struct kirkwood_buff whole = mf_kirkwood_buff_integrate(bins, g, error, box, count, inside);
+    const double density = (double)count / mf_box_volume(box);
+    double squares = whole.integral_error * whole.integral_error;
+    for (int k = 0; k < RANGES; k++) {
+        const double part = shortest_range + (1 - shortest_range) * k / RANGES;
+        struct rdf_bins fewer = *bins;
+        fewer.count = (size_t)ceil(part * (double)bins->count);
+        const struct kirkwood_buff own =
+            mf_kirkwood_buff_integrate(&fewer, g, error, box, count, inside);
+        squares += pow(own.integral - whole.integral, 2) / RANGES;
+    }
+    whole.integral_error = sqrt(squares);
+    whole.compressibility_error = density * whole.integral_error;
+    return whole;
+}
+
+struct kirkwood_buff mf_kirkwood_buff_known(const struct rdf_bins *bins, const double *g,
+                                            const double *error, const struct box *box,
+                                            size_t count, double inside) {
+    static const double standard_errors = 3;
+    struct kirkwood_buff found = mf_kirkwood_buff_of_range(bins, g, error, box, count, inside);
+    bool reaches = false, has_errors = false;
+    for (size_t k = 0; k < bins->count; k++) {
+        const double own = isfinite(error[k]) ? error[k] : 0;
+        reaches = reaches || g[k] + standard_errors * own >= 1;
+        has_errors = has_errors || own > 0;
+    }
+    if (!reaches)
+        return (struct kirkwood_buff){NAN, NAN, NAN, NAN};
+    if (!has_errors)
+        found.integral_error = found.compressibility_error = NAN;
+    return found;
+}
+
 //
 // Means of G of each pair of components over blocks of samples. Errors see the correlation of the
 // blocks: long waves decay slowly, with the collective diffusion D/S(q) times q². Tested:

@@ -110,10 +110,10 @@ static void write_integral(struct json_writer *writer, const struct fit_file *fi
                            const double *g, const double *error, const double *density) {
     const double count = (double)fit->scene.setup.placement.count;
     const struct box box = density ? mf_box_cube(count / *density) : fit->scene.setup.box;
-    const struct kirkwood_buff found = mf_kirkwood_buff_integrate(
+    const struct kirkwood_buff found = mf_kirkwood_buff_known(
         target_pairs_bins(target_files_rdf(&fit->files)), g, error, &box, (size_t)count, 0);
-    const double value[] = {found.integral, known_error(found.integral_error),
-                            found.compressibility, known_error(found.compressibility_error)};
+    const double value[] = {found.integral, found.integral_error, found.compressibility,
+                            found.compressibility_error};
     static const char *const name[] = {"kirkwood_buff", "kirkwood_buff_error", "compressibility",
                                        "compressibility_error"};
     for (int k = 0; k < 4; k++) {

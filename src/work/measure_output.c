@@ -121,14 +121,12 @@ static enum status write_kirkwood_buff(const struct measure_result *result,
     TRY(mf_rdf_result(rdf, 1, g, error));
     const double inside = mf_box_volume(&box) * share_inside(result->measured);
     const bool possible = result->measured->molecules.molecules != NULL;
-    struct kirkwood_buff found = mf_kirkwood_buff_integrate(
-        &rdf->bins, g, error, &box, rdf->particle_count, possible ? inside : 0);
+    struct kirkwood_buff found = mf_kirkwood_buff_known(&rdf->bins, g, error, &box,
+                                                        rdf->particle_count, possible ? inside : 0);
     if (!possible) { // their g is higher as a whole, and its tail that of G without them
         found.integral += inside;
         found.compressibility += mf_measure_output_density(result) * inside;
     }
-    mf_statistics_mark_unknown_errors(&found.integral_error, 1);
-    mf_statistics_mark_unknown_errors(&found.compressibility_error, 1);
     mf_json_put_measured(writer, "kirkwood_buff", "lambda^3", found.integral, found.integral_error);
     mf_json_put_measured(writer, "compressibility", "1", found.compressibility,
                          found.compressibility_error);

@@ -19,15 +19,21 @@ static double decay(double r) {
     return 1 - exp(-2 * r);
 }
 
-static struct kirkwood_buff integrate(double (*of)(double), double range, const struct box *box,
-                                      size_t count, double own_error) {
-    static double g[BINS], error[BINS];
+static double g_of[BINS], error_of[BINS];
+
+static struct rdf_bins fill(double (*of)(double), double range, double own_error) {
     const struct rdf_bins bins = {0, range / BINS, BINS};
     for (size_t k = 0; k < BINS; k++) {
-        g[k] = of(mf_rdf_bins_centre(&bins, k));
-        error[k] = own_error;
+        g_of[k] = of(mf_rdf_bins_centre(&bins, k));
+        error_of[k] = own_error;
     }
-    return mf_kirkwood_buff_integrate(&bins, g, error, box, count, 0);
+    return bins;
+}
+
+static struct kirkwood_buff integrate(double (*of)(double), double range, const struct box *box,
+                                      size_t count, double own_error) {
+    const struct rdf_bins bins = fill(of, range, own_error);
+    return mf_kirkwood_buff_integrate(&bins, g_of, error_of, box, count, 0);
 }
 
 static void test_kirkwood_buff_is_the_polynomial_of_a_hole(void **state) {
@@ -109,12 +115,44 @@ static void test_kirkwood_buff_error_is_that_of_independent_bins(void **state) {
     assert_close_relative(found.compressibility_error, 1e-12 * found.integral_error, 1e-9);
 }
 
+/// A core, a peak and a hole behind it.
+static double liquid(double r) {
+    return r < 0.9 ? 0 : 1 + exp(-2 * (r - 0.9)) * cos(6 * (r - 1.1));
+}
+
+/// Cut off inside its first peak, G is known as well as its range tells, which the noise of the
+/// bins does not; and not at all where g has not come to 1. Without errors of g it has none.
+static void test_kirkwood_buff_is_told_as_far_as_its_range_tells_it(void **state) {
+    (void)state;
+    static const double range[] = {1.05, 1.1, 1.25, 1.5, 2, 3, 4};
+    const struct box box = {.dimensions = 3, .length = {100, 100, 100}};
+    const size_t count = 800000;
+    const double exact = integrate(liquid, 20, &box, count, 0).compressibility;
+    for (size_t k = 0; k < sizeof range / sizeof *range; k++) {
+        const struct rdf_bins bins = fill(liquid, range[k], 1e-4);
+        const struct kirkwood_buff noise =
+            mf_kirkwood_buff_integrate(&bins, g_of, error_of, &box, count, 0);
+        const struct kirkwood_buff found =
+            mf_kirkwood_buff_known(&bins, g_of, error_of, &box, count, 0);
+        print_message("to %.2f: %.3f(%.3f), by noise (%.3f), exact %.3f\n", range[k],
+                      found.compressibility, found.compressibility_error,
+                      noise.compressibility_error, exact);
+        assert_close(found.compressibility, exact, 3 * found.compressibility_error);
+    }
+    struct rdf_bins bins = fill(liquid, 0.85, 1e-4);
+    assert_true(isnan(mf_kirkwood_buff_known(&bins, g_of, error_of, &box, count, 0).integral));
+    bins = fill(liquid, 4, 0);
+    const struct kirkwood_buff one = mf_kirkwood_buff_known(&bins, g_of, error_of, &box, count, 0);
+    assert_true(isfinite(one.compressibility) && isnan(one.compressibility_error));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_kirkwood_buff_is_the_polynomial_of_a_hole),
         cmocka_unit_test(test_kirkwood_buff_converges_as_the_cube_of_the_range),
         cmocka_unit_test(test_kirkwood_buff_takes_out_the_finite_size),
         cmocka_unit_test(test_kirkwood_buff_is_unknown_beyond_the_box),
+        cmocka_unit_test(test_kirkwood_buff_is_told_as_far_as_its_range_tells_it),
         cmocka_unit_test(test_kirkwood_buff_counts_pairs_that_g_leaves_out),
         cmocka_unit_test(test_kirkwood_buff_error_is_that_of_independent_bins),
     };
