@@ -45,6 +45,9 @@ enum status mf_measure_output_write(const struct measure_result *result) MUST_US
 enum status mf_measure_print(struct progress *progress,
                              const struct measure_result *result) MUST_USE;
 
+/// Say which command fits what was measured, where one can.
+void mf_measure_print_next(struct progress *progress, const struct measure_result *result);
+
 /// Whether any window of motion is complete; and any of escape times.
 bool mf_measure_tables_have_motion(const struct measure_result *result);
 bool mf_measure_tables_have_etd(const struct measure_result *result);

@@ -273,3 +273,26 @@ enum status mf_measure_print(struct progress *progress, const struct measure_res
     print_all(progress, result);
     return print_constraints(progress, result);
 }
+
+/// What a fit of target.json finds.
+static void describe_fit(const struct measure_result *result, char *text, size_t size) {
+    const bool alone = mf_measure_output_is_alone(result);
+    const bool moves = mf_measure_tables_have_motion(result) && result->kinds == NULL &&
+                       !mf_measure_output_masses_differ(result);
+    snprintf(text, size, "%s%s%s", alone ? "" : "the potential of pairs",
+             result->kinds == NULL ? ""
+             : alone               ? "the potentials of the molecules"
+                                   : " and those of the molecules",
+             moves ? ", then omega, the friction (measured with --static: no omega)" : "");
+}
+
+void mf_measure_print_next(struct progress *progress, const struct measure_result *result) {
+    const bool in_parts = result->measured->pairs.molecule && result->kinds == NULL;
+    char finds[160];
+    if (in_parts || (mf_measure_output_is_alone(result) && result->kinds == NULL))
+        return; // no target of a fit, or none that is whole
+    describe_fit(result, finds, sizeof finds);
+    const bool lacks = isnan(mf_measure_output_temperature(result));
+    mf_progress_print(progress, "next: mesofit fit --target %s%s finds %s", result->folder,
+                      lacks ? " --temperature T" : "", finds);
+}

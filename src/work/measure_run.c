@@ -364,6 +364,7 @@ static enum status write_results(struct run *run, bool interrupted) {
     }
     mf_progress_print(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
                       run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
+    mf_measure_print_next(&run->progress, &result);
     return STATUS_OK;
 }
 

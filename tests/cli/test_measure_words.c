@@ -133,6 +133,7 @@ static void test_a_temperature_that_nothing_tells(void **state) {
     small_inputs_write(*state, "a.dump", frame, NULL, NULL);
     MEASURE("--file-units", "real", "--static");
     assert_contains(result.err, "unknown temperature: give it by --temperature");
+    assert_contains(result.err, "next: mesofit fit --target out --temperature T finds the ");
     RUN_PROGRAM(&result, "fit", "--target", "out", "-o", "fit");
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "out/target.json: scene.temperature: missing: expected a number "
@@ -160,6 +161,16 @@ static void test_names_with_blanks_are_quoted(void **state) {
     assert_contains(result.err, "\"gmx editconf -f 'it'\\''s mine.tpr' -o conf.gro\"");
 }
 
+static void test_the_next_command_is_told(void **state) {
+    write_argon(*state);
+    MEASURE("--file-units", "real", "--temperature", "300", "--static");
+    assert_contains(result.err, "next: mesofit fit --target out finds the potential of pairs\n");
+    MEASURE("--file-units", "real", "--file-time-step", "0.01", "--temperature", "300", "--window",
+            "0.1");
+    assert_contains(result.err, "finds the potential of pairs, then omega, the friction (measured "
+                                "with --static: no omega)\n");
+}
+
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
@@ -171,6 +182,7 @@ int main(void) {
                                        TEST(test_velocities_without_times),
                                        TEST(test_a_temperature_that_nothing_tells),
                                        TEST(test_types_by_their_numbers),
-                                       TEST(test_names_with_blanks_are_quoted)};
+                                       TEST(test_names_with_blanks_are_quoted),
+                                       TEST(test_the_next_command_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
