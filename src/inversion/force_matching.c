@@ -305,6 +305,15 @@ static void destroy(void *memory) {
     mf_memory_free(state->error);
 }
 
+/// Forces tell nothing of bonds, angles, dihedrals and densities that were not measured with them.
+static enum status refuse_unmeasured(const struct inverse_problem *problem,
+                                     const struct potential_grid *grid) {
+    const struct force_curve *curve;
+    for (size_t g = 0; g < grid->groups; g++)
+        TRY(find_group(problem, grid->group[g].own.unknown, &curve));
+    return STATUS_OK;
+}
+
 /// Beyond their range the forces tell nothing: no potential would be as good as one of 0.
 static enum status refuse_beyond(const struct inverse_problem *problem,
                                  const struct potential_grid *grid) {
@@ -361,6 +370,7 @@ static enum status create(void *memory, const struct inverse_method *method,
     TRY(refuse_known(problem));
     state->problem = problem;
     TRY(mf_potential_grid_init(&state->grid, problem));
+    TRY(refuse_unmeasured(problem, &state->grid));
     TRY(refuse_beyond(problem, &state->grid));
     TRY_ARRAY(state->phi, state->grid.points);
     TRY_ARRAY(state->error, state->grid.points);

@@ -204,6 +204,14 @@ static void assert_measure_refused(const char *part) {
     assert_contains(result.err, part);
 }
 
+/// What a fit refuses, it does when it explains itself, too.
+static void assert_fit_refused(const char *part) {
+    RUN_PROGRAM(&result, "fit", "target/run.json", "--explain");
+    assert_measure_refused(part);
+    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
+    assert_measure_refused(part);
+}
+
 /// Three atoms of two elements in frames of a dump of LAMMPS.
 static void write_dump(struct temporary_folder *folder, int frames, const char *columns,
                        const char *a, const char *b) {
@@ -406,11 +414,9 @@ static void test_densities_that_cannot_be_matched_are_said(void **state) {
     MEASURE_CROWD("--forces", "1.2");
     write_run("\"scene\":\t{", "\"scene\": {" SOUGHT ", \"energy\": {\"law\": \"polynomial\", "
                                "\"c2\": 0.1}}},");
-    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
-    assert_measure_refused("scene.many_body: the forces of a local density whose energy is known");
+    assert_fit_refused("scene.many_body: the forces of a local density whose energy is known");
     write_text(alone, NULL, NULL);
-    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
-    assert_measure_refused("scene.conservative: the forces of pairs whose law is known");
+    assert_fit_refused("scene.conservative: the forces of pairs whose law is known");
     MEASURE("crowd/snapshots/trajectory.lammpstrj", "--molecules", "crowd.json", "--forces", "1.2");
     RUN_PROGRAM(&result, "measure", "crowd/snapshots/trajectory.lammpstrj", "--molecules",
                 "crowd.json", "--weighted-density", "0.5,1.2", "--static", "--temperature",
@@ -418,9 +424,8 @@ static void test_densities_that_cannot_be_matched_are_said(void **state) {
     write_run("\"rdf\":", "\"weighted_density\": {\"file\": \"../density/weighted_density.tsv\", "
                           "\"inner_cutoff\": 0.5, \"cutoff\": 1.2}, \"rdf\":");
     write_run_again("\"scene\":\t{", "\"scene\": {" SOUGHT "}},");
-    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
-    assert_measure_refused("target.forces: it has no local density with the weight of \"crowd\": "
-                           "measure --forces and --weighted-density together");
+    assert_fit_refused("target.forces: it has no local density with the weight of \"crowd\": "
+                       "measure --forces and --weighted-density together");
 }
 
 static void test_forces_that_cannot_be_matched_are_said(void **state) {
@@ -484,19 +489,15 @@ static void test_a_fit_without_the_forces_is_refused(void **state) {
     MEASURE(DUMP, "--molecules", "scene.json");
     run_program_assert_code(&result, 0);
     write_run(NULL, NULL);
-    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
-    assert_measure_refused("\"force-matching\" needs the forces of a trajectory: \"mesofit measure "
-                           "--forces R\" keeps them");
+    assert_fit_refused("\"force-matching\" needs the forces of a trajectory: \"mesofit measure "
+                       "--forces R\" keeps them");
     write_run("\"force-matching\"", "\"imc\", \"start\": \"forces\"");
-    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
-    assert_measure_refused("method.start: \"forces\" needs a target that");
+    assert_fit_refused("method.start: \"forces\" needs a target that");
     MEASURE(DUMP, "--molecules", "scene.json", "--forces", "1.2");
     write_run("forces_gram.tsv", "rdf_A-A.tsv");
-    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
-    assert_measure_refused("rdf_A-A.tsv: its rows and columns are not those of the other file");
+    assert_fit_refused("rdf_A-A.tsv: its rows and columns are not those of the other file");
     write_run("\"forces.tsv\"", "\"rdf_A-A.tsv\"");
-    RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
-    assert_measure_refused("rdf_A-A.tsv: its heading does not fit its rows and columns");
+    assert_fit_refused("rdf_A-A.tsv: its heading does not fit its rows and columns");
 }
 
 int main(void) {
