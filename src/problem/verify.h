@@ -27,6 +27,7 @@ struct verification {
                                     ///< that of g(r) by leaving out blocks. NaN with one replica
     struct verify_sections sections;
     struct verify_agreement agreement[TARGETS]; ///< with what was to be met; the caller's
+    struct verify_agreement compared[TARGETS];  ///< with other targets; the caller's
     double share;                               ///< of mf_verify_agree; the caller's
     struct thermodynamics_summary thermodynamics;
     struct thermodynamics_shift shift;

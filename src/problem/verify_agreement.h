@@ -33,7 +33,7 @@ struct verify_sections {
     size_t count;
     struct verify_section section[VERIFY_MAX_SECTIONS];
     struct statistics_independence
-        curve[TARGETS]; ///< of targets without sections; numbers 0: not asked for
+        curve[TARGETS]; ///< of targets without sections, fitted or compared; numbers 0: none
 };
 
 /// A few values beside each other.
@@ -83,6 +83,14 @@ enum status mf_verify_sections_find(const struct inverse_problem *problem,
 double mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
                        const struct observed *observed, double noise,
                        struct verify_agreement *agreement);
+
+/// The same of the targets that are only compared with what was fitted to the others: noise is off
+/// in one of a thousand fits in any of them.
+/// @param[in] share  of mf_verify_agree
+/// Tested: test_verify_agreement.
+void mf_verify_compare(const struct targets *compared, const struct targets *fitted,
+                       const struct verify_sections *sections, const struct observed *observed,
+                       double share, struct verify_agreement *agreement);
 
 /// What replicas have measured together, how far that is from their targets, and the standard error
 /// of each rms: by leaving out one replica in turn (jackknife), of g(r) by leaving out blocks, of

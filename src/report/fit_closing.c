@@ -79,6 +79,9 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const struct targe
     return false;
 }
 
+/// Targets that are fitted, and those that are only compared with what was fitted to them.
+enum judged { FITTED, COMPARED };
+
 /// What of a fit's targets is met least. Where errors are so badly known that noise may reach ten
 /// of them, nothing is.
 struct farthest {
@@ -88,12 +91,13 @@ struct farthest {
 };
 
 static struct farthest find_farthest(const struct fit_file *fit,
-                                     const struct verification *verification) {
+                                     const struct verification *verification, enum judged judged) {
     static const double nothing = 100; // χ² by value
     struct farthest farthest = {0};
     for (size_t s = 0; s <= fit->others; s++)
         for (int kind = 0; kind < TARGETS; kind++) {
-            const struct verify_agreement *own = &verification[s].agreement[kind];
+            const struct verify_agreement *own = judged == FITTED ? &verification[s].agreement[kind]
+                                                                  : &verification[s].compared[kind];
             const struct verify_agreement *most = farthest.agreement;
             if (own->probable > 0 && own->probable < nothing && own->distance.noise > 0 &&
                 (most == NULL || verify_agreement_off(own) > verify_agreement_off(most)))
@@ -120,7 +124,7 @@ static void describe_range(const char *before, double first, double last, const 
 /// chance up to 3.9)".
 enum { FARTHEST_SIZE = 224 };
 static void describe_farthest(const struct farthest *farthest, char text[FARTHEST_SIZE]) {
-    const struct targets *targets = &farthest->state->problem.targets;
+    const struct targets *targets = &farthest->state->problem.compared;
     const struct verify_agreement *own = farthest->agreement;
     const struct verify_part *part = &own->part;
     const struct units *units = &farthest->state->scene.units;
@@ -165,7 +169,7 @@ bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verificat
     bool finds = false;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         finds = finds || (unknown_is_omega(kind) && fit->problem.unknown[kind].wanted);
-    const struct farthest farthest = find_farthest(fit, verification);
+    const struct farthest farthest = find_farthest(fit, verification, FITTED);
     if (!finds || farthest.agreement == NULL || verify_agreement_holds(farthest.agreement))
         return false;
     describe_farthest(&farthest, off);
@@ -185,27 +189,43 @@ bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verificat
     return true;
 }
 
+/// "; those only compared differ, most …": what "success" does not cover. False: nothing is, into
+/// `text` "".
+enum { COMPARED_SIZE = FARTHEST_SIZE + 64 };
+static bool describe_compared(const struct fit_file *fit, const struct verification *verification,
+                              char text[COMPARED_SIZE]) {
+    const struct farthest farthest = find_farthest(fit, verification, COMPARED);
+    char off[FARTHEST_SIZE];
+    text[0] = '\0';
+    if (farthest.agreement == NULL || verify_agreement_holds(farthest.agreement))
+        return false;
+    describe_farthest(&farthest, off);
+    snprintf(text, COMPARED_SIZE, "; those only compared differ, most %s", off);
+    return true;
+}
+
 void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result *result,
                             const char *noise, char text[FIT_VERDICT_SIZE]) {
-    const struct farthest farthest = find_farthest(fit, result->verification);
+    const struct farthest farthest = find_farthest(fit, result->verification, FITTED);
     const bool agrees = farthest.agreement && verify_agreement_holds(farthest.agreement);
     const char *word = noise[0]                 ? "undetermined"
                        : agrees                 ? "success"
                        : result->step.converged ? "converged"
                                                 : "finished";
-    char off[FARTHEST_SIZE] = "";
+    char off[FARTHEST_SIZE] = "", others[COMPARED_SIZE];
+    const bool only_those = describe_compared(fit, result->verification, others);
     if (farthest.agreement)
         describe_farthest(&farthest, off);
     if (result->status != STATUS_OK)
         snprintf(text, FIT_VERDICT_SIZE, "the fit did not succeed; the reason follows");
     else if (farthest.agreement == NULL)
         snprintf(text, FIT_VERDICT_SIZE,
-                 "unknown: the verification has too few samples for errors to judge by");
+                 "unknown: the verification has too few samples for errors to judge by%s", others);
     else
-        snprintf(text, FIT_VERDICT_SIZE, "%s: independent simulations %s%s%s%.*s", word,
-                 agrees ? "agree with the targets within their errors"
-                        : "differ from the targets, most ",
-                 agrees ? "" : off, noise[0] ? ", but " : "", (int)strcspn(noise, ":"), noise);
+        snprintf(text, FIT_VERDICT_SIZE, "%s: independent simulations %s%s targets%s%s%s%.*s%s",
+                 word, agrees ? "agree with the" : "differ from the", only_those ? " fitted" : "",
+                 agrees ? " within their errors" : ", most ", agrees ? "" : off,
+                 noise[0] ? ", but " : "", (int)strcspn(noise, ":"), noise, others);
 }
 
 /// Whether the fit succeeded.

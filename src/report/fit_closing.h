@@ -33,7 +33,7 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const struct targe
 bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verification *verification,
                               double noise, char reason[INVERSE_REASON_SIZE]);
 
-enum { FIT_VERDICT_SIZE = 512 };
+enum { FIT_VERDICT_SIZE = 768 };
 
 /// Whether the fit succeeded: it has, if independent simulations agree with the targets within
 /// their errors (problem/verify_agreement.h) and what was fitted is known. Tested:

@@ -243,9 +243,10 @@ static void print_distance(struct progress *to, const struct fit_file *fit,
     mf_progress_print(to, "verified%s: rms of %s - target = %s%s, statistics alone %.2g%s%s%s",
                       v->by_engine ? " by the engine" : "", mf_targets_name(kind), rms, name,
                       factor * noises.both, with, of,
-                      !(distance->rms > missed * noises.both) ? ""
-                      : fitted ? ": not met: nothing better was found"
-                               : ": not fitted, only compared");
+                      !verify_agreement_holds(&v->compared[kind]) ? ": not fitted, only compared"
+                      : fitted && distance->rms > missed * noises.both
+                          ? ": not met: nothing better was found"
+                          : "");
     if (fitted && known > 1)
         print_what_is_hidden(to, &noises, mf_targets_name(kind), factor, name);
 }

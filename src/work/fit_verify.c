@@ -171,6 +171,8 @@ bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verificati
         struct verification *const own = &verification[s];
         own->share = mf_verify_agree(&state->problem.targets, &own->sections, &own->observed,
                                      of_fit->noise_of_state[s], own->agreement);
+        mf_verify_compare(&state->problem.compared, &state->problem.targets, &own->sections,
+                          &own->observed, own->share, own->compared);
     }
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];

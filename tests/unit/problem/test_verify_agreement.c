@@ -354,6 +354,39 @@ static void test_agreement_of_all_parts_is_wrong_in_one_of_a_thousand(void **sta
     }
 }
 
+/// What is only compared: a curve whose values are 2.3 of their errors off has no chance if thirty
+/// of them are independent, a single number has one in fifty.
+static void test_agreement_judges_what_is_only_compared(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS], fitted[TARGETS];
+    struct targets compared;
+    double wanted = 3, target_error = 0.3, value = 3 + 2.3 * 0.5, error = 0.4;
+    (void)state;
+    make(&of, 0.003, 0.004, 30);
+    compared = of.targets;
+    compared.target[TARGET_VACF] = of.targets.target[TARGET_RDF];
+    compared.target[TARGET_PRESSURE] =
+        (struct target){.count = 1, .value = &wanted, .error = &target_error};
+    of.observed.value[TARGET_VACF] = of.value;
+    of.observed.error[TARGET_VACF] = of.error;
+    of.observed.value[TARGET_PRESSURE] = &value;
+    of.observed.error[TARGET_PRESSURE] = &error;
+    of.sections.curve[TARGET_VACF] = (struct statistics_independence){30, 76};
+    of.sections.curve[TARGET_PRESSURE] = (struct statistics_independence){1, INFINITY};
+    mf_verify_compare(&compared, &of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_true(verify_agreement_holds(&agreement[TARGET_VACF]));
+    for (int k = 0; k < BINS; k++)
+        of.value[k] += k % 2 ? 2.3 * 0.005 : -2.3 * 0.005;
+    mf_verify_compare(&compared, &of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_close(agreement[TARGET_VACF].misfit, 2.3 * 2.3, 1e-9);
+    assert_false(verify_agreement_holds(&agreement[TARGET_VACF]));
+    assert_true(verify_agreement_holds(&agreement[TARGET_PRESSURE]));
+    // Each is of one of the two.
+    assert_true(agreement[TARGET_RDF].probable == 0);
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, fitted);
+    assert_true(fitted[TARGET_VACF].probable == 0 && fitted[TARGET_PRESSURE].probable == 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_agreement_depends_on_how_many_bins_are_independent),
@@ -370,6 +403,7 @@ int main(void) {
         cmocka_unit_test(test_agreement_sees_a_misfit_at_short_times),
         cmocka_unit_test(test_agreement_sees_a_misfit_of_some_r_0),
         cmocka_unit_test(test_agreement_of_all_parts_is_wrong_in_one_of_a_thousand),
+        cmocka_unit_test(test_agreement_judges_what_is_only_compared),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

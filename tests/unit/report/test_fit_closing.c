@@ -4,6 +4,7 @@
 #include "shared/testing.h"
 
 #include <math.h>
+#include <string.h>
 
 static void begin(struct unknowns *unknowns, struct inverse_problem *problem) {
     *problem = (struct inverse_problem){
@@ -98,6 +99,7 @@ static struct closed *make_closed(double errors) {
     targets->target[TARGET_ETD] = (struct target){.count = 6, .columns = 2, .value = value};
     targets->etd = (struct etd_grid){0.5, 1.5, 2, 3};
     targets->etd_interval = 0.1;
+    closed.fit.problem.compared = *targets;
     closed.verification.agreement[TARGET_ETD] = (struct verify_agreement){
         {errors * 0.01, 0.01, .count = 1}, errors * errors, 16, .part = {1, 1, 1, 1}};
     return &closed;
@@ -133,6 +135,27 @@ static void test_closing_calls_success_only_what_agrees_and_is_known(void **stat
     assert_contains(text, "did not succeed");
 }
 
+/// What is only compared is no failure of the fit, and "success" does not cover it.
+static void test_closing_says_what_success_does_not_cover(void **state) {
+    (void)state;
+    char text[FIT_VERDICT_SIZE];
+    struct closed *closed = make_closed(3.9);
+    struct verify_agreement *compared = &closed->verification.compared[TARGET_PRESSURE];
+    *compared = (struct verify_agreement){{0.9, 1, .count = 1}, 0.8, 4.4, .part = {0, 1, 0, 1}};
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    assert_null(strstr(text, "compared"));
+    compared->misfit = 5.3;
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    assert_string_equal(text, "success: independent simulations agree with the fitted targets "
+                              "within their errors; those only compared differ, most pressure by "
+                              "2.3 times its statistical error (by chance up to 2.1)");
+    closed->verification.agreement[TARGET_ETD].misfit = 27;
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    assert_contains(text, "converged: independent simulations differ from the fitted targets, most "
+                          "etd at 0.1");
+    assert_contains(text, "; those only compared differ, most pressure by 2.3 times");
+}
+
 /// A friction weight has not converged to targets that it does not meet.
 static void test_closing_says_so_where_a_friction_weight_misses_its_targets(void **state) {
     (void)state;
@@ -162,6 +185,7 @@ int main(void) {
         cmocka_unit_test(test_closing_asks_for_samples_where_the_targets_have_no_errors),
         cmocka_unit_test(test_closing_says_so_where_a_friction_weight_misses_its_targets),
         cmocka_unit_test(test_closing_calls_success_only_what_agrees_and_is_known),
+        cmocka_unit_test(test_closing_says_what_success_does_not_cover),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
