@@ -16,6 +16,8 @@ if (has(history)) {
     first = real(word(found, 2))
     last = columns > 2 ? real(word(found, 3)) : first + 1
 }
+# The only iteration there is, is the result.
+if (columns == 2) { columns = 1 }
 every = high(1, ceil((columns - 1) / real(most_lines)))
 iteration_of(column) = first + (last - first) * (column - 2.0) / high(1, columns - 2)
 oldest = 2 + (columns - 2) % every

@@ -9,6 +9,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,30 +39,43 @@ struct figure {
     const char *tables[4]; ///< that the script cannot do without; NULL-terminated
     const char *column;    ///< that the first table must have and its like has not, or NULL
     enum parts parts;      ///< of the first table
+    const char *number;    ///< column of it that must have a number in some row, or NULL
 };
 
-#define DISTRIBUTION(NAME, kind, beads, key, ...) {#key, "groups", {#key ".tsv"}, "target", GROUPS},
-#define ENERGY(NAME, kind, ...) {#kind "s", "bonded", {#kind "s.tsv"}, "energy_error", GROUPS},
+#define DISTRIBUTION(NAME, kind, beads, key, ...)                                                  \
+    {#key, "groups", {#key ".tsv"}, "target", GROUPS, NULL},
+#define ENERGY(NAME, kind, ...)                                                                    \
+    {#kind "s", "bonded", {#kind "s.tsv"}, "energy_error", GROUPS, NULL},
 static const struct figure figures[] = {
-    {"rdf", "rdf", {"rdf.tsv"}, "target_error", PAIRS},
-    {"intermolecular_rdf", "rdf", {"intermolecular_rdf.tsv"}, "target_error", PAIRS},
-    {"intermolecular_rdf", "intermolecular_rdf", {"intermolecular_rdf.tsv"}, "g", PAIRS_TOGETHER},
-    BONDED_LIST(DISTRIBUTION){"potential", "potential", {"potential.tsv"}, "phi", PAIRS},
-    BONDED_LIST(ENERGY){"many_body", "bonded", {"many_body.tsv"}, "energy_error", GROUPS},
-    {"omega", "omega", {"omega.tsv"}, "omega_error", NO_PARTS},
-    {"etd_cells", "etd_cells", {"etd_cells.tsv"}, "target", NO_PARTS},
-    {"vacf", "vacf", {"vacf.tsv"}, "target", NO_PARTS},
-    {"msd", "msd", {"msd.tsv"}, "target", NO_PARTS},
-    {"error", "error", {"history.tsv", "timing.tsv"}, NULL, NO_PARTS},
-    {"generations", "generations", {"history.tsv"}, "diversity", NO_PARTS},
-    {"population", "population", {"population_potential.tsv"}, NULL, PAIRS},
-    {"flow_panels", "flow_panels", {"flow_field.tsv"}, NULL, NO_PARTS},
-    {"pareto", "pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL, NO_PARTS},
+    {"rdf", "rdf", {"rdf.tsv"}, "target_error", PAIRS, NULL},
+    {"intermolecular_rdf", "rdf", {"intermolecular_rdf.tsv"}, "target_error", PAIRS, NULL},
+    {"intermolecular_rdf",
+     "intermolecular_rdf",
+     {"intermolecular_rdf.tsv"},
+     "g",
+     PAIRS_TOGETHER,
+     NULL},
+    BONDED_LIST(DISTRIBUTION){"potential", "potential", {"potential.tsv"}, "phi", PAIRS, NULL},
+    BONDED_LIST(ENERGY){"many_body", "bonded", {"many_body.tsv"}, "energy_error", GROUPS, NULL},
+    {"omega", "omega", {"omega.tsv"}, "omega_error", NO_PARTS, NULL},
+    {"etd_cells", "etd_cells", {"etd_cells.tsv"}, "target", NO_PARTS, NULL},
+    {"vacf", "vacf", {"vacf.tsv"}, "target", NO_PARTS, NULL},
+    {"msd", "msd", {"msd.tsv"}, "target", NO_PARTS, NULL},
+    {"error", "error", {"history.tsv", "timing.tsv"}, NULL, NO_PARTS, "error"},
+    {"generations", "generations", {"history.tsv"}, "diversity", NO_PARTS, NULL},
+    {"population", "population", {"population_potential.tsv"}, NULL, PAIRS, NULL},
+    {"flow_panels", "flow_panels", {"flow_field.tsv"}, NULL, NO_PARTS, NULL},
+    {"pareto", "pareto", {"pareto.tsv", "pareto_history.tsv"}, NULL, NO_PARTS, NULL},
 };
 
 // Which figures -----------------------------------------------------------------------------------
 
-/// True if a column of the table is called `column`, with or without a unit in brackets.
+/// Whether a word of a heading is this name, with or without a unit in brackets.
+static bool is_called(const char *word, const char *name) {
+    return strcspn(word, "[\n") == strlen(name) && strncmp(word, name, strlen(name)) == 0;
+}
+
+/// Whether a table has a column of this name.
 static bool has_column(const char *file, const char *column) {
     FILE *stream = fopen(file, "r");
     if (stream == NULL)
@@ -72,8 +86,7 @@ static bool has_column(const char *file, const char *column) {
     while (!found && getline(&line, &size, stream) > 0 && line[0] == '#')
         for (char *rest, *word = strtok_r(line, "# \t\n", &rest); word && !found;
              word = strtok_r(NULL, " \t\n", &rest))
-            found =
-                strcspn(word, "[") == strlen(column) && strncmp(word, column, strlen(column)) == 0;
+            found = is_called(word, column);
     free(line);
     fclose(stream);
     return found;
@@ -102,6 +115,40 @@ static bool has_values(const char *path) {
     return found;
 }
 
+/// The field of a line of a table that stands at a place, or that begins with a name; its place, or
+/// −1.
+static int find_field(char *line, int place, const char *name, const char **field) {
+    char *rest, *word = strtok_r(line, "\t\n", &rest);
+    for (int k = 0; word; word = strtok_r(NULL, "\t\n", &rest), k++) {
+        *field = word + strspn(word, "# ");
+        if (name ? is_called(*field, name) : k == place)
+            return k;
+    }
+    return -1;
+}
+
+/// Whether a column has a number in some row: that of an error has none where a method does without
+/// and where all candidates fail.
+static bool has_number(const char *path, const char *column) {
+    FILE *stream = fopen(path, "r");
+    char *line = NULL;
+    size_t size = 0;
+    const char *field = "";
+    int place = -1;
+    bool found = false;
+    while (stream && !found && getline(&line, &size, stream) > 0) {
+        if (line[0] == '#')
+            place = find_field(line, -1, column, &field);
+        else
+            found = place >= 0 && find_field(line, place, NULL, &field) == place &&
+                    isfinite(strtod(field, NULL));
+    }
+    free(line);
+    if (stream)
+        fclose(stream);
+    return found;
+}
+
 /// Whether all files of a list are there.
 static bool has_files(const char *folder, const char *const *files) {
     char path[PATH_SIZE];
@@ -118,7 +165,8 @@ static bool has_tables(const char *folder, const struct figure *figure) {
     if (!has_files(folder, figure->tables))
         return false;
     snprintf(path, sizeof path, "%s/%s", folder, figure->tables[0]);
-    return figure->column == NULL || has_column(path, figure->column);
+    return (figure->column == NULL || has_column(path, figure->column)) &&
+           (figure->number == NULL || has_number(path, figure->number));
 }
 
 // Drawing -----------------------------------------------------------------------------------------

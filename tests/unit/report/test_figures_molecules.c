@@ -33,6 +33,12 @@ static void test_energy_of_a_group_is_drawn_where_it_is_known(void **state) {
     assert_true(figure_folders_print(folder, "bonds_back-bone_1", ">0.16<"));
     assert_false(figure_folders_print(folder, "bonds_back-bone_1", ">0.25<"));
     assert_false(figure_folders_print(folder, "bonds_back-bone_1", ">800<"));
+    // The only iteration, as that of force matching, is the result.
+    figure_folders_write(folder, "bonds_back-bone_1_history.tsv",
+                         "# r[nm]\t0[kJ/mol]\n0.1\t900\n0.15\t2\n0.16\t0.5\n0.17\t0\n"
+                         "0.18\t0.5\n0.19\t2\n0.3\t900\n");
+    figure_folders_draw(folder);
+    assert_false(figure_folders_print(folder, "bonds_back-bone_1", "iteration"));
 }
 
 /// A curve without errors is drawn whole and has no band.
