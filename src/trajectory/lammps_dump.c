@@ -133,6 +133,22 @@ static enum status read_item(struct lammps_dump *dump, const struct trajectory_f
     return STATUS_OK;
 }
 
+/// "dump_modify types labels" writes labels in the column of types. None begins as a number.
+static void find_labels(struct lammps_dump *dump, const char *line) {
+    const int column = dump->column[LAMMPS_TYPE];
+    struct word word = {0};
+    int64_t number;
+    if (line == NULL || column < 0 || dump->column[LAMMPS_LABEL] >= 0)
+        return;
+    for (int k = 0; k <= column; k++)
+        if (!mf_words_next(&line, &word))
+            return;
+    if (mf_words_integer(&word, &number))
+        return;
+    dump->column[LAMMPS_LABEL] = column;
+    dump->column[LAMMPS_TYPE] = -1;
+}
+
 enum status mf_lammps_dump_read(struct lammps_dump *dump, const struct trajectory_frame *frame) {
     const char *line = (const char *)frame->raw.data, *words = NULL;
     *dump = (struct lammps_dump){.time = NAN, .step = -1};
@@ -142,7 +158,9 @@ enum status mf_lammps_dump_read(struct lammps_dump *dump, const struct trajector
     if (line == NULL)
         return mf_frame_fail_line(frame, (const char *)frame->raw.data, "the frame has no atoms");
     dump->first = mf_frame_next_line(frame, line);
-    return read_columns(dump, frame, words);
+    TRY(read_columns(dump, frame, words));
+    find_labels(dump, dump->first);
+    return STATUS_OK;
 }
 
 enum status mf_lammps_dump_split(const struct lammps_dump *dump,

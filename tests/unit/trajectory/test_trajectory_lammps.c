@@ -267,6 +267,24 @@ static void test_dump_is_periodic_when_it_does_not_say(void **state) {
     mf_trajectory_close(&trajectory);
 }
 
+/// "dump_modify types labels": what stands in the column of types are names.
+static void test_dump_has_labels_in_the_place_of_types(void **state) {
+    struct trajectory_frame frame = {0};
+    bool more;
+    assert_ok(try(state,
+                  "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n0 1\n"
+                  "0 1\n0 1\nITEM: ATOMS id type x y z\n2 c3 1 2 3\n1 OW 4 5 6\n",
+                  "lj"));
+    assert_ok(mf_trajectory_next(&trajectory, &frame, &more));
+    const struct structure *const structure = &trajectory.structure;
+    assert_true(structure->names == STRUCTURE_NAMES && !structure->has_types);
+    assert_string_equal(structure->atom[0].name, "OW");
+    assert_string_equal(structure->atom[1].name, "c3");
+    assert_true(frame.position[1][2] == 3);
+    mf_frame_clear(&frame);
+    mf_trajectory_close(&trajectory);
+}
+
 static void test_units_must_be_told_unless_the_file_does(void **state) {
     char text[1024];
     assert_int_equal(try(state, dump, NULL), STATUS_BAD_INPUT);
@@ -377,6 +395,7 @@ int main(void) {
         TEST(test_data_file_has_a_general_box_and_labels),
         TEST(test_dump_has_a_box_of_three_vectors),
         TEST(test_dump_is_periodic_when_it_does_not_say),
+        TEST(test_dump_has_labels_in_the_place_of_types),
         TEST(test_units_must_be_told_unless_the_file_does),
         cmocka_unit_test(test_units_are_those_of_the_manual),
         TEST(test_dump_has_forces_where_they_are_asked_for),
