@@ -56,12 +56,22 @@ static void add_inner_steps(struct bench_method *methods, size_t *count,
 
 enum status mf_bench_point_check(const struct simulation_setup *setup, const char *scene,
                                  const char *word) {
-    if (!simulation_has_velocities(setup) || setup->integrator->events ||
-        setup->integrator->solvent_particles)
+    const char *name = setup->integrator->name;
+    if (setup->integrator->events)
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: bench %s wants particles with velocities and forces, which "
-                              "\"%s\" has not",
-                              scene, word, setup->integrator->name);
+                              "%s: bench %s has nothing to vary: \"%s\" goes from collision to "
+                              "collision, without an error of a time step",
+                              scene, word, name);
+    if (setup->integrator->model_time_step)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: bench %s has nothing to compare with: the time step of \"%s\" "
+                              "is a property of its fluid",
+                              scene, word, name);
+    if (!simulation_has_velocities(setup))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: bench %s wants particles with velocities, which \"%s\" does not "
+                              "have",
+                              scene, word, name);
     if (setup->potential == NULL && setup->omega == NULL)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "%s: bench %s wants \"conservative\" or \"dissipative\": it looks at "
