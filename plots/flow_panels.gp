@@ -50,6 +50,8 @@ high_x(k) = low_x(k) + across / real(whole_x)
 high_y(k) = 1 - (top + (k / columns) * (tall + between_y)) / real(whole_y)
 low_y(k) = high_y(k) - tall / real(whole_y)
 is_last(k) = k + columns >= panels
+# Of a panel that is stretched, so that arrows point where the flow goes: y a pixel over x a pixel.
+turned = (height / tall) / (width / across)
 place(k) = sprintf("set lmargin at screen %g; set rmargin at screen %g; set tmargin at screen %g; set bmargin at screen %g; ", \
     low_x(k), high_x(k), high_y(k), low_y(k)) . \
     (is_last(k) ? "set xlabel x_name; set format x '%h'; " : "unset xlabel; set format x ''; ") . \
@@ -69,7 +71,7 @@ do for [kind in kinds] {
     eval place(0)
     set title "velocity" offset 0, -0.6
     eval "plot 'flow_field.tsv' using (int($0) % nx % each == each / 2 && int($0) / nx % each == each / 2 && $5 > 0 ? $1 - 0.5 * long * $3 : NaN):" . \
-        "($2 - 0.5 * long * $4):(long * $3):(long * $4) with vectors head size screen 0.004, 25 filled linewidth 0.8 linecolor rgb blue" . disc
+        "($2 - 0.5 * long * turned * $4):(long * $3):(long * turned * $4) with vectors head size screen 0.004, 25 filled linewidth 0.8 linecolor rgb blue" . disc
     eval place(1)
     set title "streamlines" offset 0, -0.6
     eval "plot $streamlines using 1:2 with lines linewidth 1 linecolor rgb ink" . disc

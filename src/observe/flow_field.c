@@ -7,6 +7,7 @@
 #include "io/data_table.h"
 #include "observe/measure.h"
 #include "observe/sample_series.h"
+#include "observe/stream_function.h"
 
 #include <math.h>
 
@@ -149,9 +150,10 @@ static double find_vorticity(const struct flow_field *f, const struct flow_table
            (t->vx[at(f, i, above)] - t->vx[at(f, i, below)]) / (rows * f->width[1]);
 }
 
-/// Velocities are 0 where nobody is; the stream function ψ, v_x ρ = ∂ψ/∂y, counts flow from y = 0
-/// to the middle of a bin, relative to the mean density.
-static void find_tables(const struct flow_field *f, const struct flow_tables *t) {
+/// Velocities are 0 where nobody is; the stream function ψ, v_x ρ = ∂ψ/∂y, v_y ρ = −∂ψ/∂x, relative
+/// to the mean density, counts flow between plates from the lower one to the middle of a bin.
+static enum status find_tables(const struct flow_field *f, const struct flow_tables *t,
+                               double *flow_x, double *flow_y) {
     const double whole = f->thickness > 0 ? f->thickness : 1;
     const double volume = f->width[0] * f->width[1] * whole * fmax(1, (double)f->series.count);
     const double mean =
@@ -161,26 +163,30 @@ static void find_tables(const struct flow_field *f, const struct flow_tables *t)
         for (size_t j = 0; j < f->bins[1]; j++) {
             const size_t n = at(f, i, j);
             const double *sum = f->sums + 3 * n;
-            const double flow = sum[1] / volume / mean * f->width[1];
             t->x[n] = ((double)i + 0.5) * f->width[0];
             t->y[n] = ((double)j + 0.5) * f->width[1];
             t->vx[n] = sum[0] > 0 ? sum[1] / sum[0] : 0;
             t->vy[n] = sum[0] > 0 ? sum[2] / sum[0] : 0;
             t->density[n] = sum[0] / volume;
-            t->stream[n] = stream + 0.5 * flow;
-            stream += flow;
+            flow_x[n] = sum[1] / volume / mean;
+            flow_y[n] = sum[2] / volume / mean;
+            t->stream[n] = stream + 0.5 * flow_x[n] * f->width[1];
+            stream += flow_x[n] * f->width[1];
         }
     }
     for (size_t j = 0; j < f->bins[1]; j++)
         for (size_t i = 0; i < f->bins[0]; i++)
             t->vorticity[at(f, i, j)] = find_vorticity(f, t, i, j);
+    return f->parameters.walls == COLLISION_PLATES
+               ? STATUS_OK
+               : mf_stream_function(t->stream, flow_x, flow_y, f->bins, f->width);
 }
 
 static enum status write(const void *state, const struct observable_results *results) {
     const struct flow_field *f = state;
     const size_t rows = f->bins[0] * f->bins[1];
     OWNED double *values = NULL;
-    TRY_ARRAY(values, 7 * rows);
+    TRY_ARRAY(values, 9 * rows);
     const struct flow_tables t = {values,
                                   values + rows,
                                   values + 2 * rows,
@@ -188,7 +194,7 @@ static enum status write(const void *state, const struct observable_results *res
                                   values + 4 * rows,
                                   values + 5 * rows,
                                   values + 6 * rows};
-    find_tables(f, &t);
+    TRY(find_tables(f, &t, values + 7 * rows, values + 8 * rows));
     const struct data_column columns[] = {{"x[lambda]", t.x, NULL},
                                           {"y[lambda]", t.y, NULL},
                                           {"v_x[lambda/tau]", t.vx, "%.5g"},
