@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Which time step goes with which friction and with which stiffness, a panel an integrator: how far the
-# temperature that is farther off is from where it should be; grey beyond the thick line, where runs
-# end as unstable.
+# temperature that is farther off is from where it should be, or without friction how much the energy
+# scatters, over k_B T; grey beyond the thick line, where runs end as unstable.
 # Reads the table that MESOFIT_TABLE names, a block a map and integrator: map, integrator, row, column,
 # strength, time_step, …, off (11), unstable (12). Draws figures/MESOFIT_FIGURE.svg and .png.
 
@@ -60,7 +60,7 @@ do for [kind in kinds] {
             if (i == 1) { set label 1 (map eq "friction" ? "friction {/:Italic ω}^2 / ({/:Italic μ}/{/:Italic τ})" : "potential, times its own") at screen 16.0 / across, graph 0.5 center rotate }
             if (m == M && i == 1) { set label 2 "time step / {/:Italic τ}" at screen (left + N * (pixels + 8) / 2.0) / across, screen 14.0 / tall center }
             if (m == 1 && i == N) { set colorbox user origin 1 - 96.0 / across, 0.3 size 14.0 / across, 0.5 } else { unset colorbox }
-            if (m == 1 && i == N) { set label 3 "temperature\noff by" at screen 1 - 98.0 / across, screen 0.9 font ",10" }
+            if (m == 1 && i == N) { set label 3 "off by" at screen 1 - 98.0 / across, screen 0.9 font ",10" }
             if (m == 1 && i == N) { set label 4 "unstable" at screen 1 - 98.0 / across, screen 0.18 font ",10"; set object 1 rectangle from screen 1 - 98.0 / across, screen 0.12 to screen 1 - 74.0 / across, screen 0.155 fillcolor rgb "#9a9a9a" fillstyle solid border rgb ink } else { unset object 1 }
             block = (m - 1) * N + i - 1
             plot table index block using 4:3:(0.5):(0.5):($12 == 1 ? NaN : high(-2, low(0, log10($11 + 1e-9)))) \

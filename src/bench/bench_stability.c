@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "base/statistics.h"
 #include "bench/bench_case.h"
 #include "bench/bench_point.h"
 #include "observe/thermodynamics.h"
@@ -39,6 +40,7 @@ enum { LEAST_STEPS = 200, SAMPLES = 100 };
 
 struct cell {
     double temperature, temperature_error, configurational, configurational_error;
+    double energy; ///< of a particle, with its kinetic one: rms about its mean [k_B T_0]
     bool unstable;
 };
 
@@ -161,6 +163,14 @@ done:
 
 // Running ----------------------------------------------------------------------------------------
 
+static double scatter_of_energy(const struct thermodynamics *thermodynamics) {
+    const double *energy = mf_thermodynamics_series(thermodynamics, THERMODYNAMICS_TOTAL_ENERGY);
+    struct running_mean mean = {0};
+    for (size_t k = 0; k < thermodynamics->series.count; k++)
+        mf_statistics_add(&mean, energy[k]);
+    return sqrt(mean.squares / mean.count);
+}
+
 static enum status measure(const struct simulation_setup *setup,
                            const struct simulation_start *start, double time, struct cell *cell) {
     enum status status = STATUS_OK;
@@ -180,7 +190,8 @@ static enum status measure(const struct simulation_setup *setup,
     *cell = (struct cell){.temperature = s.temperature,
                           .temperature_error = s.temperature_error,
                           .configurational = s.temperature_configurational,
-                          .configurational_error = s.temperature_configurational_error};
+                          .configurational_error = s.temperature_configurational_error,
+                          .energy = scatter_of_energy(&thermodynamics)};
 done:
     mf_thermodynamics_clear(&thermodynamics);
     mf_simulation_clear(&simulation);
@@ -242,11 +253,13 @@ static enum status run_rows(struct run *run) {
 
 // Telling ----------------------------------------------------------------------------------------
 
-/// How far the temperature that is farther off is from the set one, without friction from the
-/// kinetic one: a part of it.
+/// How far the temperature that is farther off is from the set one: a part of it. Without friction
+/// energy is conserved but for the time step: how much it scatters, as a part of k_B T.
 static double off(const struct run *run, const struct cell *cell) {
     const struct simulation_setup *setup = &run->scene.scene.setup;
-    const double set = setup->omega ? setup->temperature : cell->temperature;
+    const double set = setup->temperature;
+    if (setup->omega == NULL)
+        return cell->energy / set;
     return fmax(fabs(cell->temperature - set), fabs(cell->configurational - set)) / set;
 }
 
@@ -261,16 +274,18 @@ static void print_map(const struct run *run, size_t map, size_t method) {
             if (cell->unstable)
                 printf(" %7s", "x");
             else
-                printf(" %7.*f", off(run, cell) < 0.1 ? 1 : 0, 100 * off(run, cell));
+                printf(off(run, cell) < 0.1 ? " %7.2g" : " %7.0f", 100 * off(run, cell));
         }
     }
     printf("\n");
 }
 
 static void print(const struct run *run) {
-    printf("%s: %lld particles, %g tau a run\nhow far kinetic and configurational temperature are "
-           "off, the larger of both [%%]; x: ended as unstable\n",
-           run->scene.name, (long long)run->scene.scene.setup.placement.count, run->time);
+    printf("%s: %lld particles, %g tau a run\n%s [%%]; x: ended as unstable\n", run->scene.name,
+           (long long)run->scene.scene.setup.placement.count, run->time,
+           run->scene.scene.setup.omega
+               ? "how far kinetic and configurational temperature are off, the larger of both"
+               : "how much the energy of a particle, which is conserved, scatters, over k_B T");
     for (size_t map = 0; map < MAPS; map++)
         for (size_t method = 0; method < run->method_count; method++)
             if (has_map(run, (int)map))

@@ -64,6 +64,26 @@ static void test_friction_as_a_force_wants_short_steps(void **state) {
         assert_true(temporary_folder_exists("figures/three.png"));
 }
 
+/// Without friction velocity Verlet conserves the energy to second order of the time step.
+static void test_energy_tells_of_steps_without_friction(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "free.json",
+                       "{\"box\": [2.2, 2.2, 2.2], \"particles\": {\"count\": 32}, "
+                       "\"temperature\": 1, \"time_step\": 0.02, \"conservative\": "
+                       "{\"law\": \"soft-repulsion\", \"a\": 25}}",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "bench", "stability", "free.json", "--time", "2", "--threads", "1", "-o",
+                "free.tsv", "--quiet");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "energy of a particle, which is conserved, scatters");
+    char *table = temporary_folder_read("free.tsv");
+    const double fine = number_of(table, "stiffness", "velocity-verlet", OWN, 2, OFF);
+    const double coarse = number_of(table, "stiffness", "velocity-verlet", OWN, 5, OFF);
+    print_message("energy off by %g at 0.005, %g at 0.02\n", fine, coarse);
+    assert_true(fine > 0 && coarse > 8 * fine && coarse < 32 * fine); // four times the step: 16
+    free(table);
+}
+
 static const struct {
     const char *words[8];
     const char *says[3];
@@ -94,6 +114,7 @@ static void test_bad_lines_are_refused_before_anything_runs(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_friction_as_a_force_wants_short_steps),
+        TEST(test_energy_tells_of_steps_without_friction),
         TEST(test_bad_lines_are_refused_before_anything_runs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
