@@ -119,7 +119,13 @@ void mf_inverse_give_up(struct inverse_step *step) {
 void mf_inverse_exhaust(struct inverse_step *step, const char *parameter, uint32_t last_better) {
     const uint32_t iterations = step->iteration + 1, since = step->iteration - last_better;
     step->exhausted = true;
-    if (since <= recent * iterations)
+    if (iterations == 1)
+        snprintf(
+            step->reason, sizeof step->reason,
+            "its \"%s\" are used up by the first iteration, with an error of %.2g (statistical "
+            "error %.2g)",
+            parameter, step->error, step->noise);
+    else if (since <= recent * iterations)
         snprintf(step->reason, sizeof step->reason,
                  "its \"%s\" are used up; the error was still decreasing, to %.2g (statistical "
                  "error %.2g)",

@@ -135,6 +135,17 @@ static void test_populations_have_finished_when_their_budget_is_used_up(void **s
     }
 }
 
+/// One evaluation has no course that could fall.
+static void test_one_evaluation_is_told_by_its_error_alone(void **state) {
+    static struct run_program_result result;
+    run_fit(*state, PLAN,
+            "\"name\": \"nlopt\", \"evaluations\": 1, \"equilibration\": 50, \"samples\": 10, "
+            "\"every\": 10",
+            &result);
+    run_program_assert_code(&result, 0);
+    assert_summary("finished", "are used up by the first iteration, with an error of ");
+}
+
 static void test_populations_have_finished_when_their_best_agrees(void **state) {
     static struct run_program_result result;
     run_fit(*state, PLAN,
@@ -280,6 +291,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_gauss_newton_has_not_converged_at_a_standstill_above_its_noise),
         TEST_WITHOUT_FIGURES(test_gauss_newton_says_when_too_few_succeeded_for_a_model),
         TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_budget_is_used_up),
+        TEST_WITHOUT_FIGURES(test_one_evaluation_is_told_by_its_error_alone),
         TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_best_agrees),
         TEST_WITHOUT_FIGURES(
             test_populations_have_not_agreed_by_the_noise_of_their_own_simulations),
