@@ -37,6 +37,10 @@ def test_states_make_a_run_file(schema):
     state = {"target": {"rdf": {"file": "rdf.tsv"}}}
     assert fault(schema, {"states": {"hot": state, "cold": state}, "scene": {"density": 1}}) == ""
     assert fault(schema, {"states": {"hot": state}, "secne": {}}) != ""
+    # They may share a part of a target that is whole in each alone.
+    shared = {"rdf": {"cutoff": 0.9}}
+    assert fault(schema, {"states": {"hot": state}, "target": shared, "scene": {"density": 1}}) == ""
+    assert fault(schema, {"states": {}, "scene": {"density": 1}}) != ""
 
 
 def test_what_no_file_may_have_is_refused(schema):
@@ -81,6 +85,21 @@ def test_a_wrong_key_is_named(schema):
     assert "'bxo' was unexpected" in fault(schema, {**SCENE, "bxo": [4, 4, 4]})
     assert "'temprature' was unexpected" in fault(
         schema, {"target": {"rdf": {"file": "rdf.tsv"}}, "scene": {"density": 3, "temprature": 1}})
+
+
+@pytest.mark.parametrize("wrong", [
+    {"units": {"length": 0.4}}, {"seed": 2**53}, {"scene": {"title": "water"}},
+    {"scene": {"seed": 3}}, {"scene": {"measure": {"samples": 10}}},
+    {"scene": {"rdf": {"range": 1}}}, {"scene": {"particles": {"types": {}}}},
+    {"scene": {"dissipative": {"law": "table"}}}],
+    ids=json.dumps)
+def test_what_no_run_file_may_have_is_refused_by_both(schema, run_file, wrong):
+    good = {**run_file, "target": {"rdf": {"file": "rdf.tsv"}}}
+    part, value = next(iter(wrong.items()))
+    bad = {part: {**good["scene"], **value} if part == "scene" else value}
+    assert fault(schema, good) == "" and fault(schema, {**good, **bad}) != ""
+    with pytest.raises(mesofit.InputError):
+        mesofit.fit({**run_file, **bad})
 
 
 @pytest.fixture

@@ -341,10 +341,10 @@ static enum status run(const struct command_line *line) {
     for (size_t k = 0; k < count; k++)
         names[k] = topics[k].name;
     const char *const dot = strrchr(line->files[0], '.'); // as in "scene.box"
-    if (find_key(topics, count, dot ? dot + 1 : line->files[0], homes, sizeof homes))
+    const char *const key = dot ? dot + 1 : line->files[0];
+    if (find_key(topics, count, key, homes, sizeof homes))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "describe: \"%s\" is a key: see mesofit describe %s", line->files[0],
-                              homes);
+                              "describe: \"%s\" is a key: see mesofit describe %s", key, homes);
     const char *nearest = find_of_command(topics, count, line->files[0]);
     if (nearest == NULL)
         nearest = mf_nearest_name(line->files[0], names, count);

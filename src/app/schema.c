@@ -6,6 +6,8 @@
 #include "io/json_write.h"
 #include "io/units_scale.h"
 #include "observe/observable.h"
+#include "problem/inverse.h"
+#include "system/composition.h"
 
 #include <string.h>
 
@@ -37,8 +39,16 @@ static const char *chief_of(const char *group) {
     return NULL;
 }
 
+/// How many members an object has whose keys are names.
+static void write_counts(struct json_writer *writer, int64_t fewest, int64_t most) {
+    mf_json_write_integer(writer, "minProperties", fewest);
+    mf_json_write_integer(writer, "maxProperties", most);
+}
+
 static void write_several(struct json_writer *writer, const char *topic) {
     mf_json_write_text(writer, "type", "object");
+    if (strcmp(topic, "run") == 0) // states
+        write_counts(writer, 1, INVERSE_MAX_STATES);
     mf_json_begin(writer, "additionalProperties");
     write_reference(writer, topic);
     mf_json_end(writer);
@@ -88,19 +98,41 @@ static void find_settings(struct topic_object *object) {
         snprintf(object->topic, sizeof object->topic, "%.40s-and-settings", object->key);
 }
 
-/// "units" of a file: the name of a system, its scale, or that of a reduced one.
-static void write_units(struct json_writer *writer) {
+/// "units" of a file: the name of a system, its scale, or, in a scene, that of a reduced one.
+static void write_units(struct json_writer *writer, const char *of) {
     static const char *const topics[] = {"units", "scale"};
+    const size_t count = strcmp(of, "scene") == 0 ? 2 : 1;
     mf_json_begin_list(writer, "anyOf");
     mf_json_begin(writer, NULL);
     mf_schema_fields_write_list(writer, mf_units_systems);
     mf_json_end(writer);
-    for (size_t k = 0; k < sizeof topics / sizeof *topics; k++) {
+    for (size_t k = 0; k < count; k++) {
         mf_json_begin(writer, NULL);
         write_reference(writer, topics[k]);
         mf_json_end(writer);
     }
     mf_json_end(writer);
+}
+
+static void write_refused(struct json_writer *writer, const char *key) {
+    mf_json_write_flag(writer, key, false);
+}
+
+/// "scene" of a run file: without what belongs at its top, or into a scene file alone.
+static void write_scene_of_run(struct json_writer *writer) {
+    static const char *const keys[] = {"title", "seed", "measure"};
+    mf_json_begin_list(writer, "allOf");
+    mf_json_begin(writer, NULL);
+    write_reference(writer, "scene");
+    mf_json_end(writer);
+    mf_json_begin(writer, NULL);
+    mf_json_begin(writer, "properties");
+    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
+        write_refused(writer, keys[k]);
+    for (size_t k = 0; mf_observables[k]; k++)
+        write_refused(writer, mf_observables[k]->name);
+    for (int level = 0; level < 3; level++)
+        mf_json_end(writer);
 }
 
 static void write_objects(struct json_writer *writer, const char *topic) {
@@ -112,7 +144,9 @@ static void write_objects(struct json_writer *writer, const char *topic) {
         if (strcmp(topic, "target") == 0)
             find_settings(&objects[k]);
         if (strcmp(objects[k].key, "units") == 0)
-            write_units(writer);
+            write_units(writer, topic);
+        else if (strcmp(topic, "run") == 0 && strcmp(objects[k].key, "scene") == 0)
+            write_scene_of_run(writer);
         else if (objects[k].form == TOPIC_BEADS)
             write_beads(writer);
         else
@@ -125,6 +159,8 @@ static void write_objects(struct json_writer *writer, const char *topic) {
 static void write_by_name(struct json_writer *writer, const char *key, const char *type) {
     mf_json_begin(writer, key);
     mf_json_write_text(writer, "type", "object");
+    if (strcmp(type, "integer") == 0) // numbers of beads of a mixture
+        write_counts(writer, 1, COMPOSITION_MAX_TYPES);
     mf_json_begin(writer, "additionalProperties");
     mf_json_write_text(writer, "type", type);
     mf_json_end(writer);
@@ -160,6 +196,7 @@ static void write_topic(struct json_writer *writer, const struct topic *topic) {
     write_objects(writer, topic->name);
     write_own_keys(writer, topic->name);
     mf_json_end(writer);
+    mf_schema_fields_write_required(writer, topic);
     close_keys(writer);
     mf_json_end(writer);
 }
@@ -185,6 +222,7 @@ static void write_member(struct json_writer *writer, const char *chief, const st
     mf_schema_fields_write(writer, topic);
     write_objects(writer, topic->name);
     mf_json_end(writer);
+    mf_schema_fields_write_required(writer, topic);
     close_keys(writer);
     mf_json_end(writer);
     mf_json_end(writer);

@@ -15,7 +15,9 @@ static void write_range(struct json_writer *writer, const struct field *field) {
         mf_json_write_number(writer, "exclusiveMinimum", 0);
     else if (field->minimum > -DBL_MAX && (pure || field->minimum == 0))
         mf_json_write_number(writer, "minimum", field->minimum);
-    if (field->maximum < DBL_MAX && pure && field->type != FIELD_SEED)
+    if (field->type == FIELD_SEED)
+        mf_json_write_integer(writer, "maximum", (int64_t)FIELD_LARGEST_INTEGER - 1);
+    else if (field->maximum < DBL_MAX && pure)
         mf_json_write_number(writer, "maximum", field->maximum);
 }
 
@@ -136,4 +138,17 @@ void mf_schema_fields_write(struct json_writer *writer, const struct topic *topi
                 write_attribute(writer, field);
             else
                 write_field(writer, field);
+}
+
+void mf_schema_fields_write_required(struct json_writer *writer, const struct topic *topic) {
+    enum { MOST = 16 };
+    const char *names[MOST];
+    size_t count = 0;
+    for (size_t t = 0; topic->tables[t] && strcmp(topic->group, "target") != 0; t++)
+        for (const struct field *field = topic->tables[t]; field->name && count < MOST; field++)
+            if (field->required && strcmp(field->name, "count") != 0 &&
+                !has_field(topic, t, field->name))
+                names[count++] = field->name;
+    if (count > 0)
+        mf_json_write_texts(writer, "required", names, count);
 }

@@ -9,5 +9,9 @@
 /// name the first.
 void mf_schema_fields_write(struct json_writer *writer, const struct topic *topic);
 
+/// "required": the fields of a topic without a default, but not those of targets, which states may
+/// share in part, nor numbers of beads and molecules, which "types" or "density" may say.
+void mf_schema_fields_write_required(struct json_writer *writer, const struct topic *topic);
+
 /// "enum": one of these, NULL-terminated.
 void mf_schema_fields_write_list(struct json_writer *writer, const char *const *choices);

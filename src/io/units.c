@@ -107,8 +107,8 @@ struct system {
 #define SYSTEM(name) .offset = offsetof(struct system, name)
 #define SCALE .initial = NAN, .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX
 const struct field mf_units_system_fields[] = {
-    {"system", FIELD_CHOICE, SYSTEM(kind), .choices = mf_units_systems + 1, .unit = "",
-     .help = "units of the file, its tables and results"},
+    {"system", FIELD_CHOICE, SYSTEM(kind), .required = true, .choices = mf_units_systems + 1,
+     .unit = "", .help = "units of the file, its tables and results"},
     {"length", FIELD_NUMBER, SYSTEM(length), SCALE, .unit = "nm or angstrom",
      .help = "lambda; default: three beads in lambda^d"},
     {"temperature", FIELD_NUMBER, SYSTEM(temperature), SCALE, .unit = "K",
