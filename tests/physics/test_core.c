@@ -62,14 +62,16 @@ static struct inverse_problem make_problem(const struct rdf_bins *bins, const st
                                            double stiffness) {
     for (size_t k = 0; k < bins->count; k++)
         error[k] = sqrt(mf_comoments_covariance(target, k, k) / (BLOCKS - 1));
-    return (struct inverse_problem){
-        .targets = {.bins = *bins, .target[TARGET_RDF] = {bins->count, target->mean, error, 0}},
-        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
-        .scene = fluid->setup,
-        .core_threshold = 1e-3,
-        .core_stiffness = stiffness,
-        .seed = 5,
-        .threads = 2};
+    return (struct inverse_problem){.targets = {.bins = *bins,
+                                                .target[TARGET_RDF] = {.count = bins->count,
+                                                                       .value = target->mean,
+                                                                       .error = error}},
+                                    .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+                                    .scene = fluid->setup,
+                                    .core_threshold = 1e-3,
+                                    .core_stiffness = stiffness,
+                                    .seed = 5,
+                                    .threads = 2};
 }
 
 /// Find the potential of the target by inverse Monte Carlo; returns the noise of the fit.

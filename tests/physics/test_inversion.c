@@ -107,9 +107,12 @@ static void assert_truth_is_found(const struct inverse_method *method, const str
     struct inverse_step step;
     const struct inverse_problem problem = {
         .targets = {.bins = *bins,
-                    .target[TARGET_RDF] = {bins->count, target->g, target->error, 0},
-                    .target[TARGET_PRESSURE] = {with_pressure, &target->pressure, &pressure_error,
-                                                0}},
+                    .target[TARGET_RDF] = {.count = bins->count,
+                                           .value = target->g,
+                                           .error = target->error},
+                    .target[TARGET_PRESSURE] = {.count = with_pressure,
+                                                .value = &target->pressure,
+                                                .error = &pressure_error}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
         .scene = fluid->setup,
         .core_threshold = 1e-3,
@@ -145,13 +148,15 @@ static void test_imc_and_auto_have_the_pressure_when_g_reaches_far(void **state)
     struct inverse_step step;
     fluid_groot_warren(&fluid, 300, 0.01);
     measure_target(&fluid, &bins, &target);
-    struct inverse_problem problem = {
-        .targets = {.bins = bins, .target[TARGET_RDF] = {bins.count, target.g, target.error, 0}},
-        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
-        .scene = fluid.setup,
-        .core_threshold = 1e-3,
-        .core_stiffness = 2000,
-        .threads = 2};
+    struct inverse_problem problem = {.targets = {.bins = bins,
+                                                  .target[TARGET_RDF] = {.count = bins.count,
+                                                                         .value = target.g,
+                                                                         .error = target.error}},
+                                      .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+                                      .scene = fluid.setup,
+                                      .core_threshold = 1e-3,
+                                      .core_stiffness = 2000,
+                                      .threads = 2};
     for (int run = 0; run < (length_is_long() ? 4 : 1); run++) {
         problem.seed = 5 + run / 2;
         inversions_run(run % 2 ? &mf_automatic : &mf_imc, &problem, 0.003, phi, NULL, &step);

@@ -54,7 +54,8 @@ static void measure(double c, bool found, struct inversion *inversion) {
                                             .sampler = SAMPLER_AUTO};
     static struct inverse_problem problem; // the grid of an inversion points to its groups
     problem = (struct inverse_problem){
-        .targets = {.bins = {0, 0.05, BINS}, .target[TARGET_RDF] = {BINS, g, no_errors, 0}},
+        .targets = {.bins = {0, 0.05, BINS},
+                    .target[TARGET_RDF] = {.count = BINS, .value = g, .error = no_errors}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {&potential}},
         .scene = fluid.setup,
         .core_threshold = 1e-3,

@@ -68,15 +68,16 @@ static void measure(struct mixture *mixture, const double *a, uint64_t seed) {
 }
 
 static struct inverse_problem problem_of(const struct mixture *mixture) {
-    return (struct inverse_problem){
-        .targets = {.bins = bins,
-                    .target[TARGET_RDF] = {PAIRS * BINS, mixture->g, mixture->error, 0}},
-        .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
-        .scene = mixture->fluid.setup,
-        .core_threshold = 1e-3,
-        .core_stiffness = 2000,
-        .seed = 5,
-        .threads = 2};
+    return (struct inverse_problem){.targets = {.bins = bins,
+                                                .target[TARGET_RDF] = {.count = PAIRS * BINS,
+                                                                       .value = mixture->g,
+                                                                       .error = mixture->error}},
+                                    .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
+                                    .scene = mixture->fluid.setup,
+                                    .core_threshold = 1e-3,
+                                    .core_stiffness = 2000,
+                                    .seed = 5,
+                                    .threads = 2};
 }
 
 /// Best A of phi − other = A (1 − r/r_c) over the bins where g is well known, and the rms of what

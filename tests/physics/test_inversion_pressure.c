@@ -34,7 +34,8 @@ static void measure(const struct fluid *fluid, const struct rdf_bins *bins, cons
                                             .iterations = 1,
                                             .precision = 1};
     const struct inverse_problem problem = {
-        .targets = {.bins = *bins, .target[TARGET_RDF] = {bins->count, g, errors, 0}},
+        .targets = {.bins = *bins,
+                    .target[TARGET_RDF] = {.count = bins->count, .value = g, .error = errors}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true, .start = {potential}},
         .scene = fluid->setup,
         .core_threshold = 1e-3,

@@ -117,9 +117,12 @@ static void assert_rest_is_found(struct twin *twin) {
     measure(twin);
     struct inverse_problem problem = {
         .targets = {.bins = twin->bins,
-                    .target[TARGET_RDF] = {(size_t)twin->pairs * twin->bins.count, twin->g,
-                                           twin->error, 0},
-                    .target[TARGET_PRESSURE] = {1, &twin->pressure, &pressure_error, 0}},
+                    .target[TARGET_RDF] = {.count = (size_t)twin->pairs * twin->bins.count,
+                                           .value = twin->g,
+                                           .error = twin->error},
+                    .target[TARGET_PRESSURE] = {.count = 1,
+                                                .value = &twin->pressure,
+                                                .error = &pressure_error}},
         .unknown[UNKNOWN_POTENTIAL] = {.wanted = true},
         .known = {twin->pairs, twin->known},
         .scene = twin->fluid.setup,

@@ -245,7 +245,8 @@ static void test_evaluate_is_a_score_when_the_potential_is_wild(void **state) {
         fluid_groot_warren(&fluid, 400, 0.01);
         make_wild_table(wild[k], &table);
         const struct inverse_problem problem = {
-            .targets = {.bins = {0, 0.1, BINS}, .target[TARGET_RDF] = {BINS, target, none, 0}},
+            .targets = {.bins = {0, 0.1, BINS},
+                        .target[TARGET_RDF] = {.count = BINS, .value = target, .error = none}},
             .scene = fluid.setup,
             .threads = 1};
         assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);
@@ -272,7 +273,8 @@ static void test_evaluate_is_a_score_when_particles_collapse(void **state) {
     fluid.setup.temperature_limit = 1e6;
     assert_ok(mf_table_init_potential(&table, &curve));
     const struct inverse_problem problem = {
-        .targets = {.bins = {0, 0.1, BINS}, .target[TARGET_RDF] = {BINS, target, none, 0}},
+        .targets = {.bins = {0, 0.1, BINS},
+                    .target[TARGET_RDF] = {.count = BINS, .value = target, .error = none}},
         .scene = fluid.setup,
         .threads = 1};
     assert_int_equal(measure(&problem, &table, &parameters, &result), STATUS_UNSTABLE);

@@ -33,7 +33,8 @@ static void begin(struct made *made) {
         .targets = {.bins = {0, 0.05, BINS},
                     .target[TARGET_RDF] =
                         {.count = BINS, .value = made->g, .error = made->error, .weight = 0}},
-        .unknown[UNKNOWN_OMEGA] = {true, {0, VARIABLES, 0, 6, 0, 1, {0}}, {NULL}},
+        .unknown[UNKNOWN_OMEGA] =
+            {.wanted = true, .parameters = {.coefficients = VARIABLES, .maximum = 6, .cutoff = 1}},
         .scene = made->fluid.setup,
         .seed = 3,
         .threads = 1};

@@ -120,8 +120,9 @@ static void make_cells(double *value, double *error) {
 }
 
 static struct targets escape_targets(const double *value, const double *error) {
-    return (struct targets){.etd = {0.5, 1, BINS, TIMES},
-                            .target[TARGET_ETD] = {CELLS, value, error, 0, BINS, NULL}};
+    return (struct targets){
+        .etd = {0.5, 1, BINS, TIMES},
+        .target[TARGET_ETD] = {.count = CELLS, .value = value, .error = error, .columns = BINS}};
 }
 
 static void test_targets_features_are_means_over_ten_by_ten_blocks_of_escape_times(void **state) {
@@ -148,7 +149,8 @@ static void test_targets_features_use_every_cell_once_when_ten_does_not_divide_t
     const double error[FEW_TIMES * FEW_BINS] = {0};
     const struct targets targets = {
         .etd = {0.5, 1, FEW_BINS, FEW_TIMES},
-        .target[TARGET_ETD] = {FEW_TIMES * FEW_BINS, cell, error, 0, FEW_BINS, NULL}};
+        .target[TARGET_ETD] = {
+            .count = FEW_TIMES * FEW_BINS, .value = cell, .error = error, .columns = FEW_BINS}};
     for (int k = FEW_BINS; k < FEW_TIMES * FEW_BINS; k++) {
         int seen = 0;
         cell[k] = 1;

@@ -14,8 +14,17 @@ static void begin(struct unknowns *unknowns, struct inverse_problem *problem, do
         g[k] = k < CORE ? 0 : k == CORE ? 0.05 : 1;
     *problem = (struct inverse_problem){
         .targets = {.bins = {0, 0.1, BINS}, .target[TARGET_RDF] = {.count = BINS, .value = g}},
-        .unknown = {{true, {INVERSE_CURVE_BSPLINE, 12, -20, 80, 0, 0, {0}}, {NULL}},
-                    {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5, {0}}, {NULL}}},
+        .unknown = {{.wanted = true,
+                     .parameters = {.shape = INVERSE_CURVE_BSPLINE,
+                                    .coefficients = 12,
+                                    .minimum = -20,
+                                    .maximum = 80}},
+                    {.wanted = true,
+                     .parameters = {.shape = INVERSE_CURVE_BSPLINE,
+                                    .coefficients = 10,
+                                    .maximum = 5,
+                                    .inner_cutoff = 0.1,
+                                    .cutoff = 1.5}}},
         .scene = {.temperature = 1},
         .core_threshold = 1e-3,
         .core_stiffness = 2000};

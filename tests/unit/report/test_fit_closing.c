@@ -8,7 +8,12 @@
 
 static void begin(struct unknowns *unknowns, struct inverse_problem *problem) {
     *problem = (struct inverse_problem){
-        .unknown[UNKNOWN_OMEGA] = {true, {INVERSE_CURVE_BSPLINE, 10, 0, 5, 0.1, 1.5, {0}}, {NULL}},
+        .unknown[UNKNOWN_OMEGA] = {.wanted = true,
+                                   .parameters = {.shape = INVERSE_CURVE_BSPLINE,
+                                                  .coefficients = 10,
+                                                  .maximum = 5,
+                                                  .inner_cutoff = 0.1,
+                                                  .cutoff = 1.5}},
         .scene = {.temperature = 1}};
     assert_ok(mf_unknowns_init(unknowns, problem));
 }
