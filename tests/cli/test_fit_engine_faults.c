@@ -136,17 +136,26 @@ static void test_two_fits_in_one_folder(void **state) {
     waitpid(first, NULL, 0);
 }
 
+/// Full before the engine begins, and within one of its frames.
 static void test_a_disk_that_is_full(void **state) {
+    static const char *const cases[][2] = {{"size=100k", "true"},
+                                           {"size=300k", "python3 ../../../../../frames.py none"}};
     (void)state;
     assert_int_equal(mkdir("disk", 0777), 0);
-    if (mount("tmpfs", "disk", "tmpfs", 0, "size=100k") != 0) {
-        print_message("skipped: to mount a small disk takes root\n");
-        skip();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        if (mount("tmpfs", "disk", "tmpfs", 0, cases[k][0]) != 0) {
+            print_message("skipped: to mount a small disk takes root\n");
+            skip();
+        }
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "disk/out", "--engine", cases[k][1],
+                    "--quiet");
+        const bool begun = access("disk/out/engine/0001/01/frames.xyz", F_OK) == 0;
+        umount("disk");
+        run_program_assert_code(&result, 2);
+        assert_contains(result.err, "No space left on device");
+        assert_int_equal(run_program_lines(result.err), 1);
+        assert_int_equal(begun, k == 1);
     }
-    RUN_PROGRAM(&result, "fit", "run.json", "-o", "disk/out", "--engine", "true", "--quiet");
-    umount("disk");
-    run_program_assert_code(&result, 2);
-    assert_contains(result.err, "No space left on device");
 }
 
 /// A box that Monte Carlo of ours would have no room in, another engine may have: it is said in the
