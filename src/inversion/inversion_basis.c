@@ -283,8 +283,8 @@ void mf_inversion_basis_respond(struct inversion_basis *basis,
         basis->independent * fmax(1, state->response.independent * state->inefficiency / now);
 }
 
-void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion_state *state,
-                                double *step) {
+void mf_inversion_basis_measure(struct inversion_state *state, double *step) {
+    struct inversion_basis *basis = &state->basis;
     const struct potential_grid *grid = &state->grid;
     const size_t count = basis->count;
     memset(basis->gradient, 0, count * sizeof *basis->gradient);
@@ -297,6 +297,7 @@ void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inve
     memcpy(basis->inverse, basis->noise, count * count * sizeof *basis->noise);
     basis->miss = sqrt(measure_against(basis->inverse, basis->gradient, basis->change, count) /
                        (double)count);
+    state->gradient = basis->miss; // which tells whether the target is near
     invert(basis, 1, 1 / basis->pooled, basis->inverse);
     damp(basis, mf_inversion_state_is_near(state));
     find_change(basis, state->problem->scene.temperature);

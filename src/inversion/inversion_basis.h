@@ -64,11 +64,11 @@ enum status mf_inversion_basis_project(const struct inversion_basis *basis,
 void mf_inversion_basis_respond(struct inversion_basis *basis, const struct inversion_state *state);
 
 /// Gradient, Hessian and Newton step by the excess and C, near the target those of all iterations
-/// since it was reached.
+/// since it was reached: by the present gradient, so that a fit does not end with the small step of
+/// one that is still on its way.
 /// @param[out] step  of the potential in the known bins, shape [points]
 /// Tested: test_inversion_basis.
-void mf_inversion_basis_measure(struct inversion_basis *basis, const struct inversion_state *state,
-                                double *step);
+void mf_inversion_basis_measure(struct inversion_state *state, double *step);
 
 /// Covariance of the potential in the known bins, shape [known, known]: (k_B T)² B A (N + 1/n²) A
 /// Bᵀ with the inverse A above and the noise N of the gradient; and the directions that the samples

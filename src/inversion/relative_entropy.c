@@ -44,8 +44,8 @@ static enum status update(struct inversion *inversion, double *extra) {
     static const double enough = 2;
     struct inversion_state *first = inversion->state;
     const struct inversion_basis *basis = &first->basis;
-    mf_inversion_basis_measure(&first->basis, first, inversion->course.step);
-    first->gradient = extra[0] = basis->miss;
+    mf_inversion_basis_measure(first, inversion->course.step);
+    extra[0] = basis->miss;
     extra[1] = basis->decrement;
     extra[2] = (double)basis->count;
     if (basis->samples < enough * (double)basis->count) {
