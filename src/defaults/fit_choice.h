@@ -63,19 +63,9 @@ double mf_fit_choice_number(const struct fit_choice *choice, const char *path,
 enum status mf_fit_choice_give_omega(const struct fit_choice *choice, const char *path,
                                      double sigma, double cutoff, struct scene_law *law) MUST_USE;
 
-/// The time step that bonds, angles and dihedrals ask for by their targets and the integrator [τ];
-/// infinite without.
-double mf_fit_defaults_stiff_step(const struct fit_choice *choice);
-
-/// The angular frequency of the fastest of them [1/τ], and the steps of theirs that a longer one of
-/// the pairs is cut into, for the same error (dynamics/respa.h).
-double mf_fit_defaults_fastest(const struct fit_choice *choice);
-int64_t mf_fit_defaults_inner_steps(const struct fit_choice *choice, double time_step);
-
-/// The time step of dynamics without velocities whose variance in a well of that curvature
-/// [k_B T_0/λ²] is wrong by the allowed share [τ].
-double mf_fit_defaults_relaxing_step(const struct fit_choice *choice, double curvature,
-                                     double allowed);
+/// The time step, and the steps that molecules take in it (dynamics/respa.h), unless the file gives
+/// it: then it is only doubted.
+void mf_fit_defaults_time_step(struct fit_choice *choice);
 
 /// σ of ω = σ (1 − r/cutoff) with which a bead loses its velocity in the time in which it would
 /// reach its neighbours [sqrt(μ/τ)].

@@ -169,122 +169,6 @@ static void choose_count(struct fit_choice *c) {
     scene->given.count = mf_fit_choice_give(c, &place, "count", c->count);
 }
 
-/// The next lower of 1, 1.2, 1.5, 2, … times a power of 10.
-static double round_down(double value) {
-    static const double steps[] = {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
-    const double power = pow(10, floor(log10(value) + 1e-9));
-    double rounded = power;
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
-        if (steps[k] * power <= value * (1 + 1e-9))
-            rounded = steps[k] * power;
-    return rounded;
-}
-
-/// A whole fraction of the interval of targets at times, if there are any; else round in the units
-/// of the file.
-static double fit_interval(const struct fit_choice *c, double time_step) {
-    const struct target_files *files = &c->fit->files;
-    const double interval =
-        files->given[TARGET_ETD]    ? target_files_etd(files)->interval
-        : files->given[TARGET_VACF] ? target_files_curve(files, TARGET_VACF)->interval
-        : files->given[TARGET_MSD]  ? target_files_curve(files, TARGET_MSD)->interval
-                                    : 0;
-    const double unit = mf_units_factor(&c->fit->scene.units, "tau");
-    return interval > 0 ? interval / ceil(interval / time_step - 1e-9)
-                        : round_down(time_step * unit) / unit;
-}
-
-/// A step that the file gives and no simulation follows.
-static void doubt_time_step(struct fit_choice *c, double usual) {
-    static const double many = 10;
-    char given[FIT_CHOICE_TEXT_SIZE], own[FIT_CHOICE_TEXT_SIZE];
-    if (c->time_step > many * usual)
-        snprintf(c->fit->choices.doubt, FIT_CHOICE_SIZE,
-                 "scene.time_step: %s is %.0f times as long as the program would choose by this "
-                 "target, %s: left out, it is chosen",
-                 mf_fit_choice_text(c, "tau", c->time_step, given), c->time_step / usual,
-                 mf_fit_choice_text(c, "tau", fit_interval(c, usual), own));
-}
-
-/// Whether nothing moves by the time step and friction of the scene: all is done by a program that
-/// has its own.
-static bool moves_elsewhere(const struct fit_choice *c) {
-    return mf_fit_engine_knows_more(c->fit) && mf_fit_engine_verifies(c->fit);
-}
-
-/// Whether bonds, angles and dihedrals may have steps of their own: where nothing is said of
-/// dynamics, and all is simulated here.
-static bool may_have_inner_steps(const struct fit_choice *c) {
-    const struct scene_given *given = &c->fit->scene.given;
-    return !given->dynamics && !given->time_step && c->fit->engine.kind == ENGINE_NONE &&
-           !says_verification(c->fit, "time_step");
-}
-
-/// A step of the pairs in which molecules take several: their impulses resonate with half a period
-/// of the fastest bond, Ω Δt = π, and stay far from it (docs/figures.md, time steps).
-static double choose_inner_steps(struct fit_choice *c, double of_pairs, double stiff) {
-    static const double turn = 0.9;
-    const double longest = turn / mf_fit_defaults_fastest(c);
-    const double step = fit_interval(c, fmin(of_pairs, longest));
-    if (!may_have_inner_steps(c) || step <= stiff)
-        return fit_interval(c, fmin(of_pairs, stiff));
-    c->fit->inner_steps = mf_fit_defaults_inner_steps(c, step);
-    return step;
-}
-
-/// How the step was chosen.
-static void note_time_step(const struct fit_choice *c, double bound, double free, double stiff) {
-    char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
-    mf_fit_choice_text(c, "tau", c->time_step, step);
-    mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
-    mf_fit_choice_text(c, "lambda", c->scales.curvature_at, at);
-    if (c->fit->inner_steps > 0)
-        mf_fit_choice_note(c,
-                           "time step %s, in which bonds, angles and dihedrals take %lld of their "
-                           "own: their distributions are to be right within 0.3 %% of their "
-                           "variance",
-                           step, (long long)c->fit->inner_steps);
-    else if (stiff <= fmin(free, bound))
-        mf_fit_choice_note(c,
-                           "time step %s: the distributions of bonds and angles are to be right "
-                           "within 0.3 %% of their variance",
-                           step);
-    else if (bound < free)
-        mf_fit_choice_note(c,
-                           "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
-                           "configurational temperature is to be right within 1 %%",
-                           step, curvature, at);
-    else
-        mf_fit_choice_note(
-            c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
-}
-
-/// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
-/// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
-/// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
-/// neighbours; without velocities it takes as long as the square of that of the time in which it
-/// diffuses there.
-static void choose_time_step(struct fit_choice *c) {
-    static const double allowed = 0.01, way = 0.02;
-    const bool has_velocities = c->fit->scene.setup.integrator->mobility == NULL;
-    const double stiff = mf_fit_defaults_stiff_step(c);
-    const double free = (has_velocities ? way : way * way) * c->crossing;
-    const double curvature_of_pair = 2 * c->scales.curvature;
-    const double bound = has_velocities
-                             ? sqrt(4 * allowed * c->mass / curvature_of_pair)
-                             : mf_fit_defaults_relaxing_step(c, curvature_of_pair, allowed);
-    double *const time_step = &c->fit->scene.setup.time_step;
-    c->time_step = *time_step;
-    if (c->fit->scene.given.time_step) {
-        doubt_time_step(c, fmin(fmin(free, stiff), bound));
-        return;
-    }
-    c->time_step = choose_inner_steps(c, fmin(free, bound), stiff);
-    *time_step = mf_fit_choice_number(c, "scene", mf_scene_fields, "time_step", c->time_step);
-    if (!moves_elsewhere(c))
-        note_time_step(c, bound, free, stiff);
-}
-
 /// In the core, where no pair is seen, the potential goes on bending up more than it does where
 /// pairs come near, so that none is lost there.
 static void choose_core(struct fit_choice *c) {
@@ -337,7 +221,7 @@ static enum status choose_friction(struct fit_choice *c) {
     const double cutoff = c->scales.shell, sigma = mf_fit_defaults_sigma(c, cutoff);
     const double time = c->mass / (mf_fit_scales_friction(c->rdf, cutoff) * sigma * sigma);
     char size[FIT_CHOICE_TEXT_SIZE], end[FIT_CHOICE_TEXT_SIZE], memory[FIT_CHOICE_TEXT_SIZE];
-    if (!moves_elsewhere(c))
+    if (!mf_fit_engine_moves(c->fit))
         mf_fit_choice_note(
             c,
             "friction omega = %s times 1 - r/(%s): up to the end of the first shell, and "
@@ -354,7 +238,7 @@ static enum status choose_all(struct fit_choice *c) {
     choose_core(c);
     choose_cutoff(c);
     choose_count(c);
-    choose_time_step(c);
+    mf_fit_defaults_time_step(c);
     TRY(mf_fit_defaults_omega(c));
     TRY(choose_friction(c));
     TRY(mf_fit_defaults_method(c));
@@ -371,7 +255,7 @@ static enum status choose_simulation(struct fit_choice *c) {
     if (joined)
         choose_cutoff(c);
     choose_count(c);
-    choose_time_step(c);
+    mf_fit_defaults_time_step(c);
     TRY(choose_friction(c));
     if (joined)
         mf_fit_defaults_verification(c);

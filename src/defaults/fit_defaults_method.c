@@ -3,7 +3,6 @@
 // How long, how exactly and by what method a fit works that its run file leaves to the program.
 #include "defaults/fit_choice.h"
 #include "defaults/methods.h"
-#include "dynamics/hybrid_step.h"
 #include "inversion/inversion.h"
 #include "problem/evaluate.h"
 
@@ -113,90 +112,6 @@ static double choose_particles(const struct fit_choice *c) {
     const double wanted =
         ceil(fmax(min, c->density * pow(margin * fit_choice_reach(c), c->dimensions)));
     return (double)mf_composition_min_particles(c->rdf->composition, (int64_t)wanted, distortion);
-}
-
-/// Mean and variance of a target's q, from its peak on as far as it is above half of that, as of a
-/// normal distribution: the stiffest well of several.
-static void find_well(const struct target_bonded *target, double *mean, double *variance) {
-    const struct bonded_bins *bins = &target->bins;
-    size_t peak = 0, low, high;
-    for (size_t k = 0; k < bins->count; k++)
-        peak = target->value[k] > target->value[peak] ? k : peak;
-    for (low = peak; low > 0 && target->value[low] > 0.5 * target->value[peak]; low--) {
-    }
-    for (high = peak; high + 1 < bins->count && target->value[high] > 0.5 * target->value[peak];
-         high++) {
-    }
-    *mean = bonded_bins_centre(bins, peak);
-    *variance = pow((double)(high - low) * bins->width, 2) / (8 * log(2));
-}
-
-/// ω² of a group, by its target, or by its law if it has none.
-static double fastest_of(const struct fit_choice *c, int order, size_t g, double length) {
-    const struct target_groups *groups = target_files_groups(&c->fit->files, order);
-    const struct bonded_curve *curve = &c->fit->scene.molecules.molecules.group[order][g].curve;
-    const double temperature = c->fit->scene.setup.temperature;
-    double mean, variance;
-    if (target_groups_have(groups, g)) {
-        find_well(&groups->member[g], &mean, &variance);
-        variance *= mf_bonded_kinds[order]->scale * mf_bonded_kinds[order]->scale;
-    } else {
-        variance = mf_hybrid_step_variance(curve, order, temperature);
-    }
-    return mf_hybrid_step_squared_frequency(order, variance, length, temperature) / c->mass;
-}
-
-static double shortest_bond(const struct fit_choice *c) {
-    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
-    const struct target_groups *bonds = target_files_groups(&c->fit->files, BONDED_BOND);
-    double length = INFINITY, mean, variance;
-    for (size_t g = 0; g < (size_t)molecules->groups[BONDED_BOND]; g++) {
-        if (target_groups_have(bonds, g))
-            find_well(&bonds->member[g], &mean, &variance);
-        else
-            mean = mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve,
-                                   c->fit->scene.setup.temperature);
-        length = fmin(length, mean);
-    }
-    return length;
-}
-
-double mf_fit_defaults_relaxing_step(const struct fit_choice *c, double curvature, double allowed) {
-    // With x = Δt Φ''/γ Euler's steps give a variance of T/(Φ'' (1 − x/2)); those of "brownian" the
-    // exact one, and a liquid of Lennard-Jones beads the temperature 1.002(4) with x up to 0.8.
-    static const double share_of_exact = 0.4;
-    const struct simulation_setup *setup = &c->fit->scene.setup;
-    const double share = setup->integrator == &mf_brownian ? share_of_exact : 2 * allowed;
-    return share / (curvature * setup->integrator->mobility(setup));
-}
-
-/// What the variance of a bond may be wrong by.
-static const double allowed_of_bonds = 0.003;
-
-double mf_fit_defaults_fastest(const struct fit_choice *c) {
-    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
-    const double length = shortest_bond(c);
-    double fastest = 0;
-    for (int order = 0; order < BONDED_KINDS; order++)
-        for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
-            fastest = fmax(fastest, fastest_of(c, order, g, length));
-    return sqrt(fastest);
-}
-
-double mf_fit_defaults_stiff_step(const struct fit_choice *c) {
-    // Friction is chosen later, and then aboba is the default.
-    const struct integrator *integrator =
-        c->fit->scene.given.dynamics ? c->fit->scene.setup.integrator : &mf_aboba;
-    const double fastest = mf_fit_defaults_fastest(c);
-    return integrator->mobility
-               ? mf_fit_defaults_relaxing_step(c, c->mass * fastest * fastest, allowed_of_bonds)
-               : sqrt(allowed_of_bonds / mf_hybrid_step_wrong(integrator)) / fastest;
-}
-
-int64_t mf_fit_defaults_inner_steps(const struct fit_choice *c, double time_step) {
-    const double step = sqrt(allowed_of_bonds / mf_hybrid_step_wrong(&mf_velocity_verlet));
-    return 2 *
-           (int64_t)ceil(time_step * mf_fit_defaults_fastest(c) / (2 * step)); // as aboba has it
 }
 
 enum status mf_fit_defaults_take_method(struct fit_choice *c, const struct inverse_method *method) {

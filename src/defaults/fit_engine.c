@@ -100,6 +100,10 @@ bool mf_fit_engine_verifies(const struct fit_file *fit) {
            (fit->verification.by == VERIFY_BY_AUTO && mf_fit_engine_knows_more(fit));
 }
 
+bool mf_fit_engine_moves(const struct fit_file *fit) {
+    return mf_fit_engine_knows_more(fit) && mf_fit_engine_verifies(fit);
+}
+
 static enum status refuse(const char *file, const char *why) {
     return mf_status_fail(STATUS_BAD_INPUT, "%s: engine: %s", file, why);
 }

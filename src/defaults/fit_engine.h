@@ -17,6 +17,10 @@ bool mf_fit_engine_knows_more(const struct fit_file *fit);
 /// file says.
 bool mf_fit_engine_verifies(const struct fit_file *fit);
 
+/// Whether nothing moves by the time step and friction of the scene: all is done by a program that
+/// has its own.
+bool mf_fit_engine_moves(const struct fit_file *fit);
+
 /// Whether the method samples, and the scene can be sampled elsewhere. Fails: BAD_INPUT. Tested:
 /// cli/test_fit_engine.
 enum status mf_fit_engine_check(const struct fit_file *fit, const char *file) MUST_USE;

@@ -209,30 +209,37 @@ static void test_fit_defaults_choose_how_many_beads_beside_a_method(void **state
 }
 
 /// Dimers whose spring of k = 4e4 makes ω = sqrt(2 k/m): steps of Verlet's integrator make the
-/// variance wrong by (ω Δt)²/4, and impulses of pairs resonate with it where ω Δt is π.
+/// variance wrong by (ω Δt)²/4, and impulses of pairs resonate with it where ω Δt is π. Not where
+/// the file says how beads move, nor where stress or memory follow each step.
 static void test_fit_defaults_cut_the_steps_of_pairs_for_bonds(void **state) {
-    static const char *const said[] = {"", ", \"time_step\": 0.01",
-                                       ", \"dynamics\": {\"integrator\": \"velocity-verlet\"}"};
+    static const char *const said[][2] = {
+        {"", ""},
+        {"", ", \"time_step\": 0.01"},
+        {"", ", \"dynamics\": {\"integrator\": \"velocity-verlet\"}"},
+        {", \"shear_viscosity\": {\"value\": 1, \"error\": 0.1, \"fitted\": \"no\"}", ""},
+        {"",
+         ", \"memory\": {\"slow\": {\"time\": 0.5, \"omega\": {\"law\": \"power\", \"sigma\": 2, "
+         "\"cutoff\": 1}}}"}};
     const double omega = sqrt(2 * 4e4);
     write_target(state, 0.002);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 5; k++) {
         struct fit_file fit;
         char text[2048];
-        snprintf(
-            text, sizeof text,
-            TARGET
-            "\"scene\": {\"box\": [9.1, 9.1, 9.1]%s, \"bonds\": {\"stiff\": {\"law\": "
-            "\"harmonic\", \"k\": 4e4, \"length\": 0.5}}, \"molecules\": {\"dimer\": "
-            "{\"count\": 113, \"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": \"stiff\"}}}}}",
-            said[k]);
+        snprintf(text, sizeof text,
+                 "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}%s}, "
+                 "\"scene\": {\"box\": [9.1, 9.1, 9.1]%s, \"bonds\": {\"stiff\": {\"law\": "
+                 "\"harmonic\", \"k\": 4e4, \"length\": 0.5}}, \"molecules\": {\"dimer\": "
+                 "{\"count\": 113, \"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": "
+                 "\"stiff\"}}}}}",
+                 said[k][0], said[k][1]);
         assert_ok(read_run(state, &fit, "run.json", text));
         const struct simulation_setup *const setup = &fit.scene.setup;
         const int64_t inner = mf_respa_inner_steps(setup->integrator, setup->integrator_parameters);
         const double turn = omega * setup->time_step / (double)inner;
         print_message("step %g of %lld: %g of the variance\n", setup->time_step, (long long)inner,
                       turn * turn / 4);
-        assert_true(k == 0 ? inner > 3 && omega * setup->time_step <= 1 : inner == 1);
-        assert_true(k == 1 || turn * turn / 4 < 0.0031);
+        assert_true(k == 0 ? inner > 3 && omega * setup->time_step <= 0.9 : inner == 1);
+        assert_true(k == 1 || turn * turn / 4 < (k < 3 ? 0.0031 : 0.0076)); // aboba: a tenth
         mf_fit_file_clear(&fit);
     }
 }

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The time step, where the run file leaves it to the program.
+#include "defaults/fit_choice.h"
+#include "defaults/fit_engine.h"
+#include "dynamics/hybrid_step.h"
+#include "inversion/inversions.h"
+#include "observe/shear_viscosity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+// Bonds, angles and dihedrals ---------------------------------------------------------------------
+
+/// Mean and variance of a target's q, from its peak on as far as it is above half of that, as of a
+/// normal distribution: the stiffest well of several.
+static void find_well(const struct target_bonded *target, double *mean, double *variance) {
+    const struct bonded_bins *bins = &target->bins;
+    size_t peak = 0, low, high;
+    for (size_t k = 0; k < bins->count; k++)
+        peak = target->value[k] > target->value[peak] ? k : peak;
+    for (low = peak; low > 0 && target->value[low] > 0.5 * target->value[peak]; low--) {
+    }
+    for (high = peak; high + 1 < bins->count && target->value[high] > 0.5 * target->value[peak];
+         high++) {
+    }
+    *mean = bonded_bins_centre(bins, peak);
+    *variance = pow((double)(high - low) * bins->width, 2) / (8 * log(2));
+}
+
+/// ω² of a group, by its target, or by its law if it has none.
+static double fastest_of(const struct fit_choice *c, int order, size_t g, double length) {
+    const struct target_groups *groups = target_files_groups(&c->fit->files, order);
+    const struct bonded_curve *curve = &c->fit->scene.molecules.molecules.group[order][g].curve;
+    const double temperature = c->fit->scene.setup.temperature;
+    double mean, variance;
+    if (target_groups_have(groups, g)) {
+        find_well(&groups->member[g], &mean, &variance);
+        variance *= mf_bonded_kinds[order]->scale * mf_bonded_kinds[order]->scale;
+    } else {
+        variance = mf_hybrid_step_variance(curve, order, temperature);
+    }
+    return mf_hybrid_step_squared_frequency(order, variance, length, temperature) / c->mass;
+}
+
+static double shortest_bond(const struct fit_choice *c) {
+    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
+    const struct target_groups *bonds = target_files_groups(&c->fit->files, BONDED_BOND);
+    double length = INFINITY, mean, variance;
+    for (size_t g = 0; g < (size_t)molecules->groups[BONDED_BOND]; g++) {
+        if (target_groups_have(bonds, g))
+            find_well(&bonds->member[g], &mean, &variance);
+        else
+            mean = mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve,
+                                   c->fit->scene.setup.temperature);
+        length = fmin(length, mean);
+    }
+    return length;
+}
+
+static double find_relaxing_step(const struct fit_choice *c, double curvature, double allowed) {
+    // With x = Δt Φ''/γ Euler's steps give a variance of T/(Φ'' (1 − x/2)); those of "brownian" the
+    // exact one, and a liquid of Lennard-Jones beads the temperature 1.002(4) with x up to 0.8.
+    static const double share_of_exact = 0.4;
+    const struct simulation_setup *setup = &c->fit->scene.setup;
+    const double share = setup->integrator == &mf_brownian ? share_of_exact : 2 * allowed;
+    return share / (curvature * setup->integrator->mobility(setup));
+}
+
+/// What the variance of a bond may be wrong by.
+static const double allowed_of_bonds = 0.003;
+
+static double find_fastest(const struct fit_choice *c) {
+    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
+    const double length = shortest_bond(c);
+    double fastest = 0;
+    for (int order = 0; order < BONDED_KINDS; order++)
+        for (size_t g = 0; g < (size_t)molecules->groups[order]; g++)
+            fastest = fmax(fastest, fastest_of(c, order, g, length));
+    return sqrt(fastest);
+}
+
+static double find_stiff_step(const struct fit_choice *c) {
+    // Friction is chosen later, and then aboba is the default.
+    const struct integrator *integrator =
+        c->fit->scene.given.dynamics ? c->fit->scene.setup.integrator : &mf_aboba;
+    const double fastest = find_fastest(c);
+    return integrator->mobility
+               ? find_relaxing_step(c, c->mass * fastest * fastest, allowed_of_bonds)
+               : sqrt(allowed_of_bonds / mf_hybrid_step_wrong(integrator)) / fastest;
+}
+
+static int64_t find_inner_steps(const struct fit_choice *c, double time_step) {
+    const double step = sqrt(allowed_of_bonds / mf_hybrid_step_wrong(&mf_velocity_verlet));
+    return 2 * (int64_t)ceil(time_step * find_fastest(c) / (2 * step)); // as aboba has it
+}
+
+// The choice --------------------------------------------------------------------------------------
+
+/// The next lower of 1, 1.2, 1.5, 2, … times a power of 10.
+static double round_down(double value) {
+    static const double steps[] = {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
+    const double power = pow(10, floor(log10(value) + 1e-9));
+    double rounded = power;
+    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
+        if (steps[k] * power <= value * (1 + 1e-9))
+            rounded = steps[k] * power;
+    return rounded;
+}
+
+/// A whole fraction of the interval of targets at times, if there are any; else round in the units
+/// of the file.
+static double fit_interval(const struct fit_choice *c, double time_step) {
+    const struct target_files *files = &c->fit->files;
+    const double interval =
+        files->given[TARGET_ETD]    ? target_files_etd(files)->interval
+        : files->given[TARGET_VACF] ? target_files_curve(files, TARGET_VACF)->interval
+        : files->given[TARGET_MSD]  ? target_files_curve(files, TARGET_MSD)->interval
+                                    : 0;
+    const double unit = mf_units_factor(&c->fit->scene.units, "tau");
+    return interval > 0 ? interval / ceil(interval / time_step - 1e-9)
+                        : round_down(time_step * unit) / unit;
+}
+
+/// A step that the file gives and no simulation follows.
+static void doubt_time_step(struct fit_choice *c, double usual) {
+    static const double many = 10;
+    char given[FIT_CHOICE_TEXT_SIZE], own[FIT_CHOICE_TEXT_SIZE];
+    if (c->time_step > many * usual)
+        snprintf(c->fit->choices.doubt, FIT_CHOICE_SIZE,
+                 "scene.time_step: %s is %.0f times as long as the program would choose by this "
+                 "target, %s: left out, it is chosen",
+                 mf_fit_choice_text(c, "tau", c->time_step, given), c->time_step / usual,
+                 mf_fit_choice_text(c, "tau", usual, own));
+}
+
+/// Whether the stress of all forces is asked for, step by step.
+static bool asks_for_stress(const struct fit_choice *c) {
+    struct observable_kind found;
+    for (int kind = 0; (found = mf_observable_kind(kind)).observable; kind++)
+        if (found.observable == &mf_shear_viscosity && c->fit->files.given[kind])
+            return true;
+    return false;
+}
+
+/// Whether bonds, angles and dihedrals may have steps of their own: where nothing is said of
+/// dynamics, all is simulated here, and nothing is to be followed in shorter steps.
+static bool may_have_inner_steps(const struct fit_choice *c) {
+    const struct scene_given *given = &c->fit->scene.given;
+    return !given->dynamics && !given->memory && c->fit->engine.kind == ENGINE_NONE &&
+           !(c->fit->verification_given & mf_fields_bit(mf_verify_fields, "time_step")) &&
+           !asks_for_stress(c);
+}
+
+/// A step of the pairs, and the steps that molecules take in it, 0: its impulses resonate with half
+/// a period of the fastest bond, Ω Δt = π, and stay far from it (docs/figures.md, time steps).
+static double find_time_step(const struct fit_choice *c, double of_pairs, double stiff,
+                             int64_t *inner_steps) {
+    static const double turn = 0.9;
+    const double longest = turn / find_fastest(c);
+    const double step = fit_interval(c, fmin(of_pairs, longest));
+    *inner_steps = 0;
+    if (!may_have_inner_steps(c) || step <= stiff)
+        return fit_interval(c, fmin(of_pairs, stiff));
+    *inner_steps = find_inner_steps(c, step);
+    return step;
+}
+
+/// How the step was chosen.
+static void note_time_step(const struct fit_choice *c, double bound, double free, double stiff) {
+    char step[FIT_CHOICE_TEXT_SIZE], curvature[FIT_CHOICE_TEXT_SIZE], at[FIT_CHOICE_TEXT_SIZE];
+    mf_fit_choice_text(c, "tau", c->time_step, step);
+    mf_fit_choice_text(c, "k_B T_0/lambda^2", c->scales.curvature, curvature);
+    mf_fit_choice_text(c, "lambda", c->scales.curvature_at, at);
+    if (c->fit->inner_steps > 0)
+        mf_fit_choice_note(c,
+                           "time step %s, in which bonds, angles and dihedrals take %lld of their "
+                           "own: their distributions are to be right within 0.3 %% of their "
+                           "variance",
+                           step, (long long)c->fit->inner_steps);
+    else if (stiff <= fmin(free, bound))
+        mf_fit_choice_note(c,
+                           "time step %s: the distributions of bonds and angles are to be right "
+                           "within 0.3 %% of their variance",
+                           step);
+    else if (bound < free)
+        mf_fit_choice_note(c,
+                           "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
+                           "configurational temperature is to be right within 1 %%",
+                           step, curvature, at);
+    else
+        mf_fit_choice_note(
+            c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
+}
+
+/// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
+/// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
+/// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
+/// neighbours; without velocities it takes as long as the square of that of the time in which it
+/// diffuses there.
+void mf_fit_defaults_time_step(struct fit_choice *c) {
+    static const double allowed = 0.01, way = 0.02;
+    const bool has_velocities = c->fit->scene.setup.integrator->mobility == NULL;
+    const double stiff = find_stiff_step(c);
+    const double free = (has_velocities ? way : way * way) * c->crossing;
+    const double curvature_of_pair = 2 * c->scales.curvature;
+    const double bound = has_velocities ? sqrt(4 * allowed * c->mass / curvature_of_pair)
+                                        : find_relaxing_step(c, curvature_of_pair, allowed);
+    int64_t inner_steps;
+    const double usual = find_time_step(c, fmin(free, bound), stiff, &inner_steps);
+    double *const time_step = &c->fit->scene.setup.time_step;
+    c->time_step = *time_step;
+    if (c->fit->scene.given.time_step) {
+        doubt_time_step(c, usual);
+        return;
+    }
+    c->time_step = usual;
+    c->fit->inner_steps = inner_steps;
+    *time_step = mf_fit_choice_number(c, "scene", mf_scene_fields, "time_step", c->time_step);
+    if (!mf_fit_engine_moves(c->fit))
+        note_time_step(c, bound, free, stiff);
+}
