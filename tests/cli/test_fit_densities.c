@@ -241,6 +241,24 @@ static void test_an_energy_is_found_alone(void **state) {
     assert_found("out/many_body_crowd.tsv", false, 0.05);
 }
 
+/// Where the scene gives the law of a pair, the other pairs alone cannot have the slope of f.
+static void test_an_energy_beside_a_known_pair_has_its_slope(void **state) {
+    static const char count[] = "\"count\": 100", types[] = "\"types\": {\"A\": 55, \"B\": 45}";
+    small_inputs_write(*state, "scene.json", twin, count, types);
+    twins_simulate("scene.json", "target");
+    small_inputs_write(
+        *state, "run.json",
+        "{\"seed\": 3, \"target\": {\"rdf\": {\"A-B\": {\"file\": \"target/rdf_A-B.tsv\"},\n"
+        "\"B-B\": {\"file\": \"target/rdf_B-B.tsv\"}}, " P_OF_RHO "},\n\"scene\": {" FLUID
+        "\"known\": {\"A-A\": {\"law\": \"soft-repulsion\", \"a\": 25}, \"A-B\": {\"law\": "
+        "\"none\"}, \"B-B\": {\"law\": \"none\"}},\n" DENSITY(
+            "") "},\n"
+                "\"method\": {\"name\": \"imc\", \"precision\": 0.015}, " VERIFICATION "}\n",
+        count, types);
+    run_fit("out");
+    assert_found("out/many_body_crowd.tsv", false, 0.15);
+}
+
 static void assert_refused(struct temporary_folder *folder, const char *from, const char *to,
                            const char *words) {
     write_fit(folder, from, to);
@@ -283,6 +301,7 @@ int main(void) {
         CASE(test_one_energy_is_found_for_two_densities),
         CASE(test_the_energy_that_was_found_is_exported),
         CASE(test_an_energy_is_found_alone),
+        CASE(test_an_energy_beside_a_known_pair_has_its_slope),
         CASE(test_what_cannot_be_found_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
