@@ -141,6 +141,23 @@ static bool is_another(const struct thermodynamics_summary *s,
     return found > factor * setup->temperature || found < setup->temperature / factor;
 }
 
+/// A temperature that changes all along has an error that covers any other.
+static enum status assess_change(const struct thermodynamics *t,
+                                 const struct thermodynamics_summary *s,
+                                 const struct simulation_setup *setup) {
+    if (!simulation_has_velocities(setup) || !simulation_holds_temperature(setup) ||
+        !mf_simulation_is_thermal(setup) || !is_another(s, setup) ||
+        mf_equilibration_check("temperature", "T_0",
+                               mf_thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE),
+                               t->series.count) == STATUS_OK)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "the temperature is %.3g" STATUS_TEMPERATURE
+                          ", not %.3g" STATUS_TEMPERATURE ", and still changes: equilibrate for "
+                          "longer, or with more friction",
+                          s->temperature, setup->temperature);
+}
+
 /// Temperatures first: a step that is too long tells more than the drift that it makes.
 static enum status assess(const void *state, const struct simulation_setup *setup) {
     const struct thermodynamics *t = state;
@@ -149,6 +166,7 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     if (status == STATUS_UNSTABLE && !is_another(&s, setup))
         return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());
     TRY(status);
+    TRY(assess_change(t, &s, setup));
     TRY(mf_equilibration_check("potential energy", "k_B T_0",
                                mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
                                t->series.count));

@@ -333,6 +333,24 @@ static void test_simulate_is_not_ok_when_its_temperature_is_another(void **state
     assert_null(strstr(result.err, "steps"));
 }
 
+/// A lattice that was hot and cools down for as long as it is sampled: the error of such a mean
+/// covers the scene's temperature, too, a third of it.
+static void test_simulate_is_not_ok_when_it_cools_down_all_along(void **state) {
+    static const char scene[] =
+        "{\"seed\": 3, \"units\": \"nm-ps\", \"box\": [2.2, 2.2, 2.2], \"temperature\": 120,\n"
+        "\"particles\": {\"count\": 220, \"mass\": 40}, \"time_step\": 0.005,\n"
+        "\"conservative\": {\"law\": \"lennard-jones\", \"epsilon\": 1, \"sigma\": 0.34, "
+        "\"cutoff\": 0.85},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3, \"cutoff\": 0.5},\n"
+        "\"measure\": {\"equilibration\": 1000, \"samples\": 60, \"every\": 50}}\n";
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", scene, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "cooling", "--quiet");
+    run_program_assert_code(&result, 1);
+    assert_contains(result.err, " K, not 120 K, and still changes: equilibrate for longer");
+    results_assert_text("cooling/summary.json", "status", "unconverged");
+}
+
 /// Trimers whose beads have not yet moved apart, and the same after a while.
 static void test_simulate_warns_when_it_has_not_settled(void **state) {
     static const char plan[] = "\"equilibration\": 0, \"samples\": 100, \"every\": 5";
@@ -490,6 +508,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_unstable_scene_ends_with_step_and_force),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
         TEST_WITHOUT_FIGURES(test_simulate_is_not_ok_when_its_temperature_is_another),
+        TEST_WITHOUT_FIGURES(test_simulate_is_not_ok_when_it_cools_down_all_along),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_nothing_holds_the_temperature),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_steps_do_not_follow_a_memory),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_it_has_not_settled),
