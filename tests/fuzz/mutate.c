@@ -25,7 +25,7 @@ static unsigned seed;
 static const char *program, *findings;
 static struct { long runs, done, unconverged, refused, memory, slow, found; } counts;
 
-static void die(const char *what) {
+static _Noreturn void die(const char *what) {
     perror(what);
     exit(2);
 }
