@@ -69,12 +69,12 @@ struct kirkwood_buff mf_kirkwood_buff_of_range(const struct rdf_bins *bins, cons
 struct kirkwood_buff mf_kirkwood_buff_known(const struct rdf_bins *bins, const double *g,
                                             const double *error, const struct box *box,
                                             size_t count, double inside) {
-    static const double standard_errors = 3;
+    static const double standard_errors = 3, tail = 0.003; // of N particles it is below 1 by S(0)/N
     struct kirkwood_buff found = mf_kirkwood_buff_of_range(bins, g, error, box, count, inside);
     bool reaches = false, has_errors = false;
     for (size_t k = 0; k < bins->count; k++) {
         const double own = isfinite(error[k]) ? error[k] : 0;
-        reaches = reaches || g[k] + standard_errors * own >= 1;
+        reaches = reaches || g[k] + standard_errors * own >= 1 - tail;
         has_errors = has_errors || own > 0;
     }
     if (!reaches)

@@ -39,8 +39,9 @@ struct kirkwood_buff mf_kirkwood_buff_of_range(const struct rdf_bins *bins, cons
                                                const double *error, const struct box *box,
                                                size_t count, double inside);
 
-/// The same as it is told: NaN where the range ends before g comes to 1, within three errors, as
-/// most of G is then beyond; and no errors where g has none. Tested: test_kirkwood_buff.
+/// The same as it is told: NaN where the range ends before g comes to 1, within three errors and
+/// what a finite system makes of its tail, as most of G is then beyond; and no errors where g has
+/// none. Tested: test_kirkwood_buff.
 struct kirkwood_buff mf_kirkwood_buff_known(const struct rdf_bins *bins, const double *g,
                                             const double *error, const struct box *box,
                                             size_t count, double inside);

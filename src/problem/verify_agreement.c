@@ -66,6 +66,7 @@ struct comparison {
     const struct target *target;
     const double *value, *error;
     double share;
+    double open;                 ///< standard error that what was fitted leaves of each value
     bool counted;                ///< values are counts
     const struct rdf_bins *bins; ///< of g(r); NULL: of others
 };
@@ -73,12 +74,12 @@ struct comparison {
 static struct comparison compare(const struct targets *targets, int kind,
                                  const struct observed *observed, double share) {
     const struct target *const target = &targets->target[kind];
-    return (struct comparison){target,
-                               observed->value[kind],
-                               observed->error[kind],
-                               share,
-                               kind == TARGET_RDF || target->block,
-                               kind == TARGET_RDF ? &targets->bins : NULL};
+    return (struct comparison){.target = target,
+                               .value = observed->value[kind],
+                               .error = observed->error[kind],
+                               .share = share,
+                               .counted = kind == TARGET_RDF || target->block,
+                               .bins = kind == TARGET_RDF ? &targets->bins : NULL};
 }
 
 /// What one count makes of value k, by the nearest of the values first … end − 1 that has counts;
@@ -121,7 +122,8 @@ static struct sums add_up(const struct comparison *of, size_t first, size_t end,
     struct sums sums = {0};
     for (size_t k = first; k < end; k++) {
         const double variance = target_variance(of->target, of->counted, k, of->value[k]) +
-                                (1 + of->share) * own_variance(of, k, first, end);
+                                (1 + of->share) * own_variance(of, k, first, end) +
+                                of->open * of->open;
         const double common = common_error(of->target, k);
         const double difference = of->value[k] - of->target->value[k] - factor * common;
         if (!isfinite(difference) || !(variance > 0))
@@ -201,7 +203,7 @@ static struct target_distance distance_of(const struct comparison *of,
             continue;
         squares += difference * difference;
         noise += pow(known_or_0(of->target->error[k]), 2) +
-                 (1 + of->share) * pow(known_or_0(of->error[k]), 2);
+                 (1 + of->share) * pow(known_or_0(of->error[k]), 2) + of->open * of->open;
         distance.count++;
     }
     distance.rms = sqrt(squares / (double)distance.count);
@@ -209,20 +211,27 @@ static struct target_distance distance_of(const struct comparison *of,
     return distance;
 }
 
+/// Where the values end that have the error of their factor in common with value k.
+static size_t end_of_pair(const struct target *target, size_t k) {
+    const size_t pair = target->count / (target->pairs > 0 ? target->pairs : 1);
+    return target->factor_error ? (k / pair + 1) * pair : target->count;
+}
+
 static struct verify_agreement assess_part(const struct comparison *of,
                                            const struct verify_part *part, double probable) {
-    struct sums sums = {0};
+    double square = 0, bins = 0;
     for (size_t row = part->row; row < part->row + part->rows; row++) {
         const size_t first = row * of->target->columns + part->column;
-        const struct sums own = add_up(of, first, first + part->columns, 0);
-        sums.square += own.square;
-        sums.along += own.along;
-        sums.common += own.common;
-        sums.bins += own.bins;
+        const size_t end = first + part->columns;
+        for (size_t k = first, next = first; k < end; k = next) {
+            next = end_of_pair(of->target, k) < end ? end_of_pair(of->target, k) : end;
+            const struct sums own = add_up(of, k, next, 0);
+            square += own.square - own.along * own.along / (1 + own.common);
+            bins += own.bins;
+        }
     }
-    const double square = sums.square - sums.along * sums.along / (1 + sums.common);
     return (struct verify_agreement){.distance = distance_of(of, part),
-                                     .misfit = sums.bins > 0 ? square / sums.bins : 0,
+                                     .misfit = bins > 0 ? square / bins : 0,
                                      .probable = probable,
                                      .part = *part};
 }
@@ -250,56 +259,48 @@ static bool is_curve_of_time(int kind) {
 }
 
 /// The whole by its independent numbers, and each part as one number.
-static void assess_curve(const struct targets *targets, int kind,
-                         const struct statistics_independence *known,
-                         const struct observed *observed, double share, double chance,
+static void assess_curve(const struct comparison *of, int kind,
+                         const struct statistics_independence *known, double chance,
                          struct verify_agreement *worst) {
-    const struct comparison of = compare(targets, kind, observed, share);
-    const bool matrix = of.target->columns > 0;
-    const size_t columns = matrix ? of.target->columns : of.target->count;
+    const bool matrix = of->target->columns > 0;
+    const size_t columns = matrix ? of->target->columns : of->target->count;
     size_t row[MAX_EDGES], column[MAX_EDGES];
-    const size_t above = find_edges(matrix ? of.target->count / columns : 1, true, row);
+    const size_t above = find_edges(matrix ? of->target->count / columns : 1, true, row);
     const size_t across = find_edges(columns, !matrix && is_curve_of_time(kind), column);
     const size_t parts = above * across;
     const double own = parts > 1 ? 0.5 * chance : chance;
     const struct verify_part whole = {0, row[above], 0, columns};
     const struct statistics_independence one = {1, known->freedom};
     const double probable = find_probable(&one, own / (double)parts);
-    keep(worst, assess_part(&of, &whole, find_probable(known, own)));
+    keep(worst, assess_part(of, &whole, find_probable(known, own)));
     for (size_t p = 0; parts > 1 && p < parts; p++) {
         const size_t i = p / across, j = p % across;
         const struct verify_part part = {row[i], row[i + 1] - row[i], column[j],
                                          column[j + 1] - column[j]};
-        keep(worst, assess_part(&of, &part, probable));
+        keep(worst, assess_part(of, &part, probable));
     }
 }
 
-/// Whether a kind of targets is judged as a curve, and not one of those `without`, if any.
-static bool is_curve(const struct targets *targets, const struct targets *without,
-                     const struct verify_sections *sections, int kind) {
-    return targets_ask(targets, kind) && sections->curve[kind].numbers > 0 &&
-           !(without && targets_ask(without, kind));
-}
-
-static size_t count_curves(const struct targets *targets, const struct targets *without,
-                           const struct verify_sections *sections) {
-    size_t count = 0;
-    for (int kind = 0; kind < TARGETS; kind++)
-        count += is_curve(targets, without, sections, kind);
-    return count;
+/// Whether a kind of targets is judged as a curve.
+static bool is_curve(const struct targets *targets, const struct verify_sections *sections,
+                     int kind) {
+    return targets_ask(targets, kind) && sections->curve[kind].numbers > 0;
 }
 
 double mf_verify_agree(const struct targets *targets, const struct verify_sections *sections,
                        const struct observed *observed, double noise,
                        struct verify_agreement *agreement) {
     const double share = find_share(targets, observed, noise);
-    const double chance =
-        false_alarms / (double)(sections->count + count_curves(targets, NULL, sections));
+    size_t judged = sections->count;
+    for (int kind = 0; kind < TARGETS; kind++)
+        judged += is_curve(targets, sections, kind);
+    const double chance = false_alarms / (double)judged;
     for (int kind = 0; kind < TARGETS; kind++) {
         agreement[kind] = (struct verify_agreement){0};
-        if (is_curve(targets, NULL, sections, kind))
-            assess_curve(targets, kind, &sections->curve[kind], observed, share, chance,
-                         &agreement[kind]);
+        if (!is_curve(targets, sections, kind))
+            continue;
+        const struct comparison of = compare(targets, kind, observed, share);
+        assess_curve(&of, kind, &sections->curve[kind], chance, &agreement[kind]);
     }
     for (size_t s = 0; s < sections->count; s++)
         keep(&agreement[sections->section[s].kind],
@@ -307,14 +308,19 @@ double mf_verify_agree(const struct targets *targets, const struct verify_sectio
     return share;
 }
 
-void mf_verify_compare(const struct targets *compared, const struct targets *fitted,
-                       const struct verify_sections *sections, const struct observed *observed,
-                       double share, struct verify_agreement *agreement) {
-    const double chance = false_alarms / (double)count_curves(compared, fitted, sections);
+void mf_verify_compare(const struct targets *compared, const struct verify_sections *sections,
+                       const struct observed *observed, double share, const double *open,
+                       struct verify_agreement *agreement) {
+    size_t judged = 0;
+    for (int kind = 0; kind < TARGETS; kind++)
+        judged += is_curve(compared, sections, kind) && isfinite(open[kind]);
     for (int kind = 0; kind < TARGETS; kind++) {
         agreement[kind] = (struct verify_agreement){0};
-        if (is_curve(compared, fitted, sections, kind))
-            assess_curve(compared, kind, &sections->curve[kind], observed, share, chance,
-                         &agreement[kind]);
+        if (!is_curve(compared, sections, kind) || !isfinite(open[kind]))
+            continue;
+        struct comparison of = compare(compared, kind, observed, share);
+        of.open = open[kind];
+        assess_curve(&of, kind, &sections->curve[kind], false_alarms / (double)judged,
+                     &agreement[kind]);
     }
 }

@@ -84,13 +84,16 @@ double mf_verify_agree(const struct targets *targets, const struct verify_sectio
                        const struct observed *observed, double noise,
                        struct verify_agreement *agreement);
 
-/// The same of the targets that are only compared with what was fitted to the others: noise is off
-/// in one of a thousand fits in any of them.
+/// The same of the targets that are only compared with what was fitted to the others: their own
+/// noise is off in one of a thousand fits in any of them. What that of the fitted targets makes of
+/// them is not known but for `open`.
 /// @param[in] share  of mf_verify_agree
+/// @param[in] open   standard error of each value by what was fitted, shape [TARGETS]; INFINITY: it
+///                   is fitted itself, or not fixed by what is, and not judged
 /// Tested: test_verify_agreement.
-void mf_verify_compare(const struct targets *compared, const struct targets *fitted,
-                       const struct verify_sections *sections, const struct observed *observed,
-                       double share, struct verify_agreement *agreement);
+void mf_verify_compare(const struct targets *compared, const struct verify_sections *sections,
+                       const struct observed *observed, double share, const double *open,
+                       struct verify_agreement *agreement);
 
 /// What replicas have measured together, how far that is from their targets, and the standard error
 /// of each rms: by leaving out one replica in turn (jackknife), of g(r) by leaving out blocks, of

@@ -85,6 +85,7 @@ enum judged { FITTED, COMPARED };
 /// What of a fit's targets is met least. Where errors are so badly known that noise may reach ten
 /// of them, nothing is.
 struct farthest {
+    enum judged judged;
     const struct fit_file *state;
     int kind;
     const struct verify_agreement *agreement; ///< NULL: the errors of none are known
@@ -101,7 +102,7 @@ static struct farthest find_farthest(const struct fit_file *fit,
             const struct verify_agreement *most = farthest.agreement;
             if (own->probable > 0 && own->probable < nothing && own->distance.noise > 0 &&
                 (most == NULL || verify_agreement_off(own) > verify_agreement_off(most)))
-                farthest = (struct farthest){s == 0 ? fit : &fit->other[s - 1], kind, own};
+                farthest = (struct farthest){judged, s == 0 ? fit : &fit->other[s - 1], kind, own};
         }
     return farthest;
 }
@@ -120,9 +121,20 @@ static void describe_range(const char *before, double first, double last, const 
                  factor * last, unit);
 }
 
+/// Two digits of each of two numbers, or as many as tell them apart.
+static void print_apart(const double number[2], char text[2][NUMBER_TEXT_SIZE]) {
+    static const int most = 6;
+    for (int digits = 2; digits <= most; digits++) {
+        for (int k = 0; k < 2; k++)
+            snprintf(text[k], NUMBER_TEXT_SIZE, "%.*g", digits, number[k]);
+        if (strcmp(text[0], text[1]) != 0)
+            return;
+    }
+}
+
 /// "etd from 0.1 to 0.2 ps for r_0 from 0.6 to 0.7 nm by 5.1 times its statistical error (by
-/// chance up to 3.9)".
-enum { FARTHEST_SIZE = 224 };
+/// chance up to 3.9)". What is only compared is off by the noise of the fitted targets, too.
+enum { FARTHEST_SIZE = 240 };
 static void describe_farthest(const struct farthest *farthest, char text[FARTHEST_SIZE]) {
     const struct targets *targets = &farthest->state->problem.compared;
     const struct verify_agreement *own = farthest->agreement;
@@ -144,11 +156,14 @@ static void describe_farthest(const struct farthest *farthest, char text[FARTHES
                        "lambda", lengths);
     }
     const bool whole = own->misfit / own->probable >= verify_agreement_off(own);
+    const double off[2] = {sqrt(whole ? own->misfit : own->stretch.misfit),
+                           sqrt(whole ? own->probable : own->stretch.probable)};
+    char number[2][NUMBER_TEXT_SIZE];
+    print_apart(off, number);
     snprintf(text, FARTHEST_SIZE,
-             "%.24s%s%s by %.2g times its statistical error (by chance up to %.2g)",
-             mf_targets_name(farthest->kind), times, lengths,
-             sqrt(whole ? own->misfit : own->stretch.misfit),
-             sqrt(whole ? own->probable : own->stretch.probable));
+             "%.24s%s%s by %.12s times its statistical error (by %s up to %.12s)",
+             mf_targets_name(farthest->kind), times, lengths, number[0],
+             farthest->judged == FITTED ? "chance" : "its own statistics", number[1]);
 }
 
 /// The cutoff of ω, which no fit changes: ", 1.5 nm,".
@@ -189,19 +204,24 @@ bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verificat
     return true;
 }
 
-/// "; those only compared differ, most …": what "success" does not cover. False: nothing is, into
-/// `text` "".
+static bool only_compares_some(const struct fit_file *fit) {
+    bool some = false;
+    for (int kind = 0; kind < TARGETS; kind++)
+        some = some || (fit->files.given[kind] && !targets_ask(&fit->problem.targets, kind));
+    return some;
+}
+
+/// "; those only compared differ, most …", or "": what "success" does not cover.
 enum { COMPARED_SIZE = FARTHEST_SIZE + 64 };
-static bool describe_compared(const struct fit_file *fit, const struct verification *verification,
+static void describe_compared(const struct fit_file *fit, const struct verification *verification,
                               char text[COMPARED_SIZE]) {
     const struct farthest farthest = find_farthest(fit, verification, COMPARED);
     char off[FARTHEST_SIZE];
     text[0] = '\0';
     if (farthest.agreement == NULL || verify_agreement_holds(farthest.agreement))
-        return false;
+        return;
     describe_farthest(&farthest, off);
     snprintf(text, COMPARED_SIZE, "; those only compared differ, most %s", off);
-    return true;
 }
 
 void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result *result,
@@ -213,7 +233,7 @@ void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result 
                        : result->step.converged ? "converged"
                                                 : "finished";
     char off[FARTHEST_SIZE] = "", others[COMPARED_SIZE];
-    const bool only_those = describe_compared(fit, result->verification, others);
+    describe_compared(fit, result->verification, others);
     if (farthest.agreement)
         describe_farthest(&farthest, off);
     if (result->status != STATUS_OK)
@@ -223,7 +243,8 @@ void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result 
                  "unknown: the verification has too few samples for errors to judge by%s", others);
     else
         snprintf(text, FIT_VERDICT_SIZE, "%s: independent simulations %s%s targets%s%s%s%.*s%s",
-                 word, agrees ? "agree with the" : "differ from the", only_those ? " fitted" : "",
+                 word, agrees ? "agree with the" : "differ from the",
+                 only_compares_some(fit) ? " fitted" : "",
                  agrees ? " within their errors" : ", most ", agrees ? "" : off,
                  noise[0] ? ", but " : "", (int)strcspn(noise, ":"), noise, others);
 }
@@ -246,9 +267,8 @@ static void print_open(double value, double error, char text[NUMBER_TEXT_SIZE]) 
              unit * round(error / unit));
 }
 
-/// The pressure, or the density at constant pressure, if g(r) does not fix it.
-static void print_bulk(struct progress *to, const struct fit_file *fit,
-                       const struct fit_result *result) {
+bool mf_fit_closing_is_open(const struct fit_file *fit, const struct fit_result *result,
+                            char text[FIT_VERDICT_SIZE]) {
     const struct units *units = &fit->scene.units;
     const struct thermodynamics_summary *found = &result->verification->thermodynamics;
     const enum target_kind kind = inverse_problem_bulk(&fit->problem);
@@ -259,8 +279,8 @@ static void print_bulk(struct progress *to, const struct fit_file *fit,
     char unit[UNITS_NAME_SIZE], range[NUMBER_TEXT_SIZE];
     // Of several states that of the first is known, and together they leave less open.
     if (fit->others > 0 || !(result->step.ramp.error > 0) || !(open > error) ||
-        targets_ask(&fit->problem.compared, kind))
-        return;
+        targets_ask(&fit->problem.targets, kind))
+        return false;
     print_open(factor * value, factor * hypot(open, error), range);
     char length[UNITS_NAME_SIZE], law[256];
     const double end =
@@ -278,11 +298,19 @@ static void print_bulk(struct progress *to, const struct fit_file *fit,
                  "\"precision\" takes more");
     else
         snprintf(law, sizeof law, ", if the law ends at %.4g%s", end, length);
-    mf_progress_print(
-        to,
-        "undetermined: g(r) alone does not determine the %s: %s%s%s; give \"%s\" as a "
-        "second target to fix it",
-        name, range, mf_units_suffix(units, of, unit), law, name);
+    const bool given = targets_ask(&fit->problem.compared, kind);
+    snprintf(text, FIT_VERDICT_SIZE,
+             "undetermined: g(r) alone does not determine the %s: %s%s%s; %s \"%s\" as a second "
+             "target to fix it",
+             name, range, mf_units_suffix(units, of, unit), law, given ? "fit" : "give", name);
+    return true;
+}
+
+static void print_bulk(struct progress *to, const struct fit_file *fit,
+                       const struct fit_result *result) {
+    char text[FIT_VERDICT_SIZE];
+    if (mf_fit_closing_is_open(fit, result, text))
+        mf_progress_print(to, "%s", text);
 }
 
 /// What relaxes so slowly that the samples hold few independent values of it.

@@ -42,6 +42,11 @@ enum { FIT_VERDICT_SIZE = 768 };
 void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result *result,
                             const char *noise, char text[FIT_VERDICT_SIZE]);
 
+/// Whether g(r) leaves the pressure, or the density at constant pressure, open, and how far, which
+/// one that is only compared does not mend. Tested: test_fit_closing.
+bool mf_fit_closing_is_open(const struct fit_file *fit, const struct fit_result *result,
+                            char text[FIT_VERDICT_SIZE]);
+
 /// Say them.
 void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result,

@@ -163,16 +163,41 @@ static bool is_contradicted(const struct fit_file *state, const struct inverse_m
     return mf_fit_verification_contradicts(verification, targets, temperature, units, reason);
 }
 
+/// Whether a target is of what friction makes where that does no more than hold the temperature.
+static bool is_of_thermostat(const struct fit_file *state, int kind) {
+    const struct observable *of = mf_observable_kind(kind).observable;
+    return state->choices.thermostat && of && of->of_time;
+}
+
+/// What the fitted targets leave open of each that is only compared (mf_verify_compare): where a
+/// potential is found, of the pressure, or the density, what g(r) alone does.
+static void find_open(const struct fit_file *fit, const struct fit_file *state,
+                      const struct inverse_ramp *ramp, double open[TARGETS]) {
+    const struct inverse_problem *problem = &state->problem;
+    for (int kind = 0; kind < TARGETS; kind++)
+        open[kind] =
+            targets_ask(&problem->targets, kind) || is_of_thermostat(state, kind) ? INFINITY : 0;
+    if (!problem->unknown[UNKNOWN_POTENTIAL].wanted)
+        return;
+    const enum target_kind bulk = inverse_problem_bulk(problem);
+    open[TARGET_PRESSURE] = open[TARGET_DENSITY] = INFINITY;
+    // Of several states that of the first is known, and together they leave less open.
+    if (!targets_ask(&problem->targets, bulk) && fit->others == 0 && ramp->bulk_open > 0)
+        open[bulk] = ramp->bulk_open;
+}
+
 bool mf_fit_verify_any_contradicts(const struct fit_file *fit, struct verification *verification,
                                    const struct inverse_step *of_fit,
                                    char reason[INVERSE_REASON_SIZE]) {
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];
         struct verification *const own = &verification[s];
+        double open[TARGETS];
         own->share = mf_verify_agree(&state->problem.targets, &own->sections, &own->observed,
                                      of_fit->noise_of_state[s], own->agreement);
-        mf_verify_compare(&state->problem.compared, &state->problem.targets, &own->sections,
-                          &own->observed, own->share, own->compared);
+        find_open(fit, state, &of_fit->ramp, open);
+        mf_verify_compare(&state->problem.compared, &own->sections, &own->observed, own->share,
+                          open, own->compared);
     }
     for (size_t s = 0; s <= fit->others; s++) {
         const struct fit_file *state = s == 0 ? fit : &fit->other[s - 1];

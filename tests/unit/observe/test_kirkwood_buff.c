@@ -120,6 +120,11 @@ static double liquid(double r) {
     return r < 0.9 ? 0 : 1 + exp(-2 * (r - 0.9)) * cos(6 * (r - 1.1));
 }
 
+/// That comes to 1 as a system of 1000 with S(0) = 1 lets it.
+static double hole_of_1000(double r) {
+    return (1 - exp(-3 * r)) * (1 - 1e-3);
+}
+
 /// Cut off inside its first peak, G is known as well as its range tells, which the noise of the
 /// bins does not; and not at all where g has not come to 1. Without errors of g it has none.
 static void test_kirkwood_buff_is_told_as_far_as_its_range_tells_it(void **state) {
@@ -144,6 +149,8 @@ static void test_kirkwood_buff_is_told_as_far_as_its_range_tells_it(void **state
     bins = fill(liquid, 4, 0);
     const struct kirkwood_buff one = mf_kirkwood_buff_known(&bins, g_of, error_of, &box, count, 0);
     assert_true(isfinite(one.compressibility) && isnan(one.compressibility_error));
+    bins = fill(hole_of_1000, 4, 0);
+    assert_true(isfinite(mf_kirkwood_buff_known(&bins, g_of, error_of, &box, 1000, 0).integral));
 }
 
 int main(void) {

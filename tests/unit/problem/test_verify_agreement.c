@@ -361,6 +361,7 @@ static void test_agreement_judges_what_is_only_compared(void **state) {
     struct verify_agreement agreement[TARGETS], fitted[TARGETS];
     struct targets compared;
     double wanted = 3, target_error = 0.3, value = 3 + 2.3 * 0.5, error = 0.4;
+    double open[TARGETS] = {[TARGET_RDF] = INFINITY}; // it is fitted
     (void)state;
     make(&of, 0.003, 0.004, 30);
     compared = of.targets;
@@ -373,18 +374,49 @@ static void test_agreement_judges_what_is_only_compared(void **state) {
     of.observed.error[TARGET_PRESSURE] = &error;
     of.sections.curve[TARGET_VACF] = (struct statistics_independence){30, 76};
     of.sections.curve[TARGET_PRESSURE] = (struct statistics_independence){1, INFINITY};
-    mf_verify_compare(&compared, &of.targets, &of.sections, &of.observed, 0, agreement);
+    mf_verify_compare(&compared, &of.sections, &of.observed, 0, open, agreement);
     assert_true(verify_agreement_holds(&agreement[TARGET_VACF]));
     for (int k = 0; k < BINS; k++)
         of.value[k] += k % 2 ? 2.3 * 0.005 : -2.3 * 0.005;
-    mf_verify_compare(&compared, &of.targets, &of.sections, &of.observed, 0, agreement);
+    mf_verify_compare(&compared, &of.sections, &of.observed, 0, open, agreement);
     assert_close(agreement[TARGET_VACF].misfit, 2.3 * 2.3, 1e-9);
     assert_false(verify_agreement_holds(&agreement[TARGET_VACF]));
     assert_true(verify_agreement_holds(&agreement[TARGET_PRESSURE]));
+    // What g(r) leaves open of a pressure, or all of it, is no misfit.
+    value = 3 + 10 * 0.5;
+    mf_verify_compare(&compared, &of.sections, &of.observed, 0, open, agreement);
+    assert_false(verify_agreement_holds(&agreement[TARGET_PRESSURE]));
+    open[TARGET_PRESSURE] = 6;
+    mf_verify_compare(&compared, &of.sections, &of.observed, 0, open, agreement);
+    assert_close(agreement[TARGET_PRESSURE].misfit, 25 / (36 + 0.25), 1e-9);
+    assert_true(verify_agreement_holds(&agreement[TARGET_PRESSURE]));
+    open[TARGET_PRESSURE] = INFINITY;
+    mf_verify_compare(&compared, &of.sections, &of.observed, 0, open, agreement);
+    assert_true(agreement[TARGET_PRESSURE].probable == 0);
+    assert_false(verify_agreement_holds(&agreement[TARGET_VACF]));
     // Each is of one of the two.
     assert_true(agreement[TARGET_RDF].probable == 0);
     mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, fitted);
     assert_true(fitted[TARGET_VACF].probable == 0 && fitted[TARGET_PRESSURE].probable == 0);
+}
+
+/// g of two pair types as one curve: one factor is too large by its error, the other too small.
+static void test_agreement_knows_that_each_pair_type_has_its_factor(void **state) {
+    static const double one_percent[] = {0.01, 0.01}, open[TARGETS] = {0};
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make(&of, 0.002, 0, 2);
+    of.targets.target[TARGET_RDF].pairs = 2;
+    of.targets.target[TARGET_RDF].factor_error = one_percent;
+    of.sections.curve[TARGET_RDF] = (struct statistics_independence){2, INFINITY};
+    for (int k = 0; k < BINS; k++)
+        of.value[k] = k < BINS / 2 ? 0.99 : 1.01;
+    mf_verify_compare(&of.targets, &of.sections, &of.observed, 0, open, agreement);
+    assert_true(verify_agreement_holds(&agreement[TARGET_RDF]));
+    of.value[0] = of.value[1] = 1.05;
+    mf_verify_compare(&of.targets, &of.sections, &of.observed, 0, open, agreement);
+    assert_false(verify_agreement_holds(&agreement[TARGET_RDF]));
 }
 
 int main(void) {
@@ -404,6 +436,7 @@ int main(void) {
         cmocka_unit_test(test_agreement_sees_a_misfit_of_some_r_0),
         cmocka_unit_test(test_agreement_of_all_parts_is_wrong_in_one_of_a_thousand),
         cmocka_unit_test(test_agreement_judges_what_is_only_compared),
+        cmocka_unit_test(test_agreement_knows_that_each_pair_type_has_its_factor),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

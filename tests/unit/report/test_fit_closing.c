@@ -146,19 +146,55 @@ static void test_closing_says_what_success_does_not_cover(void **state) {
     char text[FIT_VERDICT_SIZE];
     struct closed *closed = make_closed(3.9);
     struct verify_agreement *compared = &closed->verification.compared[TARGET_PRESSURE];
+    closed->fit.files.given[TARGET_ETD] = closed->fit.files.given[TARGET_PRESSURE] = 1;
     *compared = (struct verify_agreement){{0.9, 1, .count = 1}, 0.8, 4.4, .part = {0, 1, 0, 1}};
     mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
-    assert_null(strstr(text, "compared"));
+    assert_string_equal(text, "success: independent simulations agree with the fitted targets "
+                              "within their errors");
     compared->misfit = 5.3;
     mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
     assert_string_equal(text, "success: independent simulations agree with the fitted targets "
                               "within their errors; those only compared differ, most pressure by "
-                              "2.3 times its statistical error (by chance up to 2.1)");
+                              "2.3 times its statistical error (by its own statistics up to "
+                              "2.1)");
     closed->verification.agreement[TARGET_ETD].misfit = 27;
     mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
     assert_contains(text, "converged: independent simulations differ from the fitted targets, most "
                           "etd at 0.1");
     assert_contains(text, "; those only compared differ, most pressure by 2.3 times");
+}
+
+/// Numbers that differ look so.
+static void test_closing_tells_a_misfit_from_its_bound(void **state) {
+    (void)state;
+    char text[FIT_VERDICT_SIZE];
+    struct closed *closed = make_closed(4.04);
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    assert_contains(text, "by 4.04 times its statistical error (by chance up to 4)");
+    closed = make_closed(4.0004);
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    assert_contains(text, "by 4.0004 times its statistical error (by chance up to 4)");
+}
+
+/// A pressure that is only compared is no less open than one that is not given.
+static void test_closing_says_what_g_leaves_open_unless_it_is_fitted(void **state) {
+    (void)state;
+    static const double value = 23.65;
+    char text[FIT_VERDICT_SIZE];
+    struct closed *closed = make_closed(3.9);
+    struct inverse_problem *const problem = &closed->fit.problem;
+    closed->result.step.ramp = (struct inverse_ramp){.error = 0.1, .bulk_open = 6.2};
+    closed->verification.thermodynamics.pressure = 20.53;
+    problem->targets.bins = (struct rdf_bins){.count = 60, .width = 0.025};
+    assert_true(mf_fit_closing_is_open(&closed->fit, &closed->result, text));
+    assert_string_equal(text, "undetermined: g(r) alone does not determine the pressure: 20.5 +- "
+                              "6.2, if the law ends at 1.5; give \"pressure\" as a second target "
+                              "to fix it");
+    problem->compared.target[TARGET_PRESSURE] = (struct target){.count = 1, .value = &value};
+    assert_true(mf_fit_closing_is_open(&closed->fit, &closed->result, text));
+    assert_contains(text, "20.5 +- 6.2, if the law ends at 1.5; fit \"pressure\" as a second");
+    problem->targets.target[TARGET_PRESSURE] = problem->compared.target[TARGET_PRESSURE];
+    assert_false(mf_fit_closing_is_open(&closed->fit, &closed->result, text));
 }
 
 /// A friction weight has not converged to targets that it does not meet.
@@ -191,6 +227,8 @@ int main(void) {
         cmocka_unit_test(test_closing_says_so_where_a_friction_weight_misses_its_targets),
         cmocka_unit_test(test_closing_calls_success_only_what_agrees_and_is_known),
         cmocka_unit_test(test_closing_says_what_success_does_not_cover),
+        cmocka_unit_test(test_closing_tells_a_misfit_from_its_bound),
+        cmocka_unit_test(test_closing_says_what_g_leaves_open_unless_it_is_fitted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -62,9 +62,46 @@ static void test_verification_judges_each_state_by_the_noise_of_its_samples(void
     assert_true(mf_fit_verify_any_contradicts(&made.fit, made.verification, &swapped, reason));
 }
 
+/// A fit of g, with a pressure and an MSD that are only compared and off by ten of their errors.
+static void test_verification_compares_what_the_fitted_targets_fix(void **state) {
+    (void)state;
+    static struct made made;
+    static const int kind[] = {TARGET_PRESSURE, TARGET_MSD};
+    double wanted = 20, target_error = 0.3, value = 25, error = 0.4;
+    char reason[INVERSE_REASON_SIZE] = "";
+    struct inverse_step step = {0};
+    make(&made);
+    made.fit.others = 0;
+    struct inverse_problem *const problem = &made.fit.problem;
+    const struct verify_agreement *const found = made.verification[0].compared;
+    problem->compared = problem->targets;
+    for (int k = 0; k < 2; k++) {
+        problem->compared.target[kind[k]] =
+            (struct target){.count = 1, .value = &wanted, .error = &target_error};
+        made.verification[0].observed.value[kind[k]] = &value;
+        made.verification[0].observed.error[kind[k]] = &error;
+        made.verification[0].sections.curve[kind[k]] =
+            (struct statistics_independence){1, INFINITY};
+    }
+    mf_fit_verify_any_contradicts(&made.fit, made.verification, &step, reason);
+    assert_false(verify_agreement_holds(&found[TARGET_PRESSURE])); // of a potential that is given
+    assert_false(verify_agreement_holds(&found[TARGET_MSD]));
+    problem->unknown[UNKNOWN_POTENTIAL].wanted = made.fit.choices.thermostat = true;
+    mf_fit_verify_any_contradicts(&made.fit, made.verification, &step, reason);
+    assert_true(found[TARGET_PRESSURE].probable == 0 && found[TARGET_MSD].probable == 0);
+    step.ramp.bulk_open = 0.5; // which g leaves open, and is not all of it
+    mf_fit_verify_any_contradicts(&made.fit, made.verification, &step, reason);
+    assert_false(verify_agreement_holds(&found[TARGET_PRESSURE]));
+    step.ramp.bulk_open = 6;
+    mf_fit_verify_any_contradicts(&made.fit, made.verification, &step, reason);
+    assert_true(found[TARGET_PRESSURE].probable > 0);
+    assert_true(verify_agreement_holds(&found[TARGET_PRESSURE]));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_verification_judges_each_state_by_the_noise_of_its_samples),
+        cmocka_unit_test(test_verification_compares_what_the_fitted_targets_fix),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
