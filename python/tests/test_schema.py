@@ -43,6 +43,40 @@ def test_states_make_a_run_file(schema):
     assert fault(schema, {"states": {}, "scene": {"density": 1}}) != ""
 
 
+FRICTION = {"law": "power", "sigma": 3}
+
+
+@pytest.mark.parametrize("shared, state", [
+    ({"memory": {"slow": {"omega": FRICTION}}}, {"memory": {"slow": {"time": 0.5}}}),
+    ({"bonds": {"AB": {"law": "harmonic", "length": 1}}}, {"bonds": {"AB": {"k": 30}}}),
+    ({"bonds": {"AB": {"law": "harmonic", "k": 30}}}, {"bonds": {"AB": {"length": 1}}}),
+    ({"conservative": {"law": "table"}}, {"conservative": {"file": "phi.tsv"}}),
+    ({"dissipative": {"law": "power"}}, {"dissipative": {"sigma": 3}}),
+    ({"dissipative": FRICTION}, {"dissipative": None}),
+    ({"dissipative": FRICTION}, {"dissipative": {"sigma": None}}),
+    ({"dissipative": FRICTION},
+     {"dissipative": {"law": "table", "file": "omega.tsv", "sigma": None}}),
+    ({"memory": {"slow": {"omega": FRICTION, "time": 1}}}, {"memory": {"slow": None}}),
+    ({"particles": {"types": {"A": 5, "B": 5}}}, {"particles": {"types": {"A": None}}}),
+], ids=json.dumps)
+def test_a_state_is_a_patch_of_its_file(schema, shared, state):
+    hot = {"target": {"rdf": {"file": "rdf.tsv"}}, "scene": state}
+    assert fault(schema, {"states": {"hot": hot}, "scene": {"density": 1, **shared}}) == ""
+    # Without states a file is whole: one of the parts alone is not.
+    assert any(fault(schema, {**hot, "scene": {"density": 1, **part}}) for part in (shared, state))
+
+
+def test_wrong_keys_and_values_of_a_state_are_named(schema):
+    def in_state(**scene):
+        return fault(schema, {"states": {"hot": {"scene": scene}}, "scene": {"density": 1}})
+    assert "'temprature' was unexpected" in in_state(temprature=1)
+    assert "'temperature']: 'hot' is not of type 'number'" in in_state(temperature="hot")
+    for key, law in (("dissipative", {"law": "power", "sigma": "x"}),
+                     ("conservative", {"law": "soft-repulsion", "b": 1})):
+        assert f"['states', 'hot', 'scene', '{key}']" in in_state(**{key: law})
+    assert fault(schema, {"states": {"hot": None}, "scene": {"density": 1}}) != ""
+
+
 def test_what_no_file_may_have_is_refused(schema):
     for wrong in ({"box": [3, -3, 3]}, {"box": [0, 3, 3]}, {"particles": {"count": 5, "mass": 0}},
                   {"particles": {"types": {"A": 5, "B": 5}, "mass": {"A": -1, "B": 1}}}):
