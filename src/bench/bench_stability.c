@@ -105,6 +105,12 @@ static enum status check_scene(const struct run *run) {
             STATUS_BAD_INPUT,
             "%s: bench stability wants \"conservative\", whose strength it varies",
             run->scene.name);
+    for (int k = 0; setup->omega == NULL && k < setup->interactions; k++)
+        if (setup->interaction[k].kind->does_work)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: bench stability has no measure: \"%s\" does work, and "
+                                  "without \"dissipative\" nothing holds the energy",
+                                  run->scene.name, setup->interaction[k].kind->name);
     return STATUS_OK;
 }
 

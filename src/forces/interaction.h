@@ -40,6 +40,8 @@ struct interaction {
     /// Is of beads that find each other, by the list or by particles->fraction: both are of the
     /// last step's end, and mean nothing in between (dynamics/respa.h).
     bool finds_pairs;
+    /// Its forces follow from no potential: the energy is not conserved.
+    bool does_work;
     /// Force on each particle that drives it for ever, in a direction of its own [k_B T_0/λ]. NULL:
     /// none.
     double (*push)(const void *parameters);

@@ -57,5 +57,6 @@ const struct interaction mf_self_propulsion = {
     .push = push,
     .cost = 1,
     .add = add,
+    .does_work = true,
     .laplacian = mf_interaction_no_laplacian,
 };

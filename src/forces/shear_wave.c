@@ -46,6 +46,7 @@ const struct interaction mf_shear_wave = {
     .cost = 12,
     .begin = begin,
     .add = add,
+    .does_work = true,
     .laplacian = mf_interaction_no_laplacian,
 };
 

@@ -94,6 +94,8 @@ static const struct {
     {{"bench", "stability", "small.json", "--skips"}, {"bench stability takes no --skips"}},
     {{"bench", "stability", "small.json", "--integrators", "verlet"},
      {"--integrators: \"verlet\" does not suit"}},
+    {{"bench", "stability", "driven.json"},
+     {"driven: bench stability has no measure: \"shear-wave\" does work"}},
     {{"bench", "stability", "gas.json"}, {"gas: bench stability wants \"conservative\""}},
 };
 
@@ -103,6 +105,12 @@ static void test_bad_lines_are_refused_before_anything_runs(void **state) {
     small_inputs_write(*state, "gas.json", small_inputs_scene,
                        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}",
                        "\"conservative\": {\"law\": \"none\"}");
+    small_inputs_write(*state, "driven.json",
+                       "{\"box\": [2.2, 2.2, 2.2], \"particles\": {\"count\": 32}, "
+                       "\"temperature\": 1, \"time_step\": 0.02, \"conservative\": "
+                       "{\"law\": \"soft-repulsion\", \"a\": 25}, \"interactions\": "
+                       "{\"shear-wave\": {\"acceleration\": 0.1}}}",
+                       NULL, NULL);
     for (size_t k = 0; k < sizeof bad_lines / sizeof *bad_lines; k++) {
         run_program(&result, &(struct run_program_how){0}, bad_lines[k].words);
         run_program_assert_refused(&result, ".", bad_lines[k].says[0], 1, bad_lines[k].says);
