@@ -45,16 +45,19 @@ static void print(const struct fit_choice *choice, const struct fit_constraint *
                                                      : NULL,
                                                  "lambda")
                                : 1;
-    char k[FIT_CHOICE_TEXT_SIZE];
+    char k[FIT_CHOICE_TEXT_SIZE], part[32] = "";
+    if (bond)
+        snprintf(part, sizeof part, ", %g %% of the mean",
+                 100 * mf_bonded_kinds[own->order]->narrow);
     mf_fit_choice_text(choice, bond ? "k_B T_0/lambda^2" : "k_B T_0", own->k, k);
     if (mf_bonded_distribution_is_constrained(own->order, &own->moments))
         mf_fit_choice_note(choice,
                            "%s \"%s\": a constraint (standard deviation %.2g, mean %.4g): "
                            "replaced by a harmonic potential with k = %s and standard "
-                           "deviation %.2g, as narrow as the time step allows",
+                           "deviation %.2g%s: a narrower one would need a shorter time step",
                            mf_bonded_kinds[own->order]->name, own->name,
                            factor * own->moments.deviation, factor * own->moments.mean, k,
-                           factor * own->deviation);
+                           factor * own->deviation, part);
     else
         mf_fit_choice_note(choice,
                            "%s \"%s\": its target has only %zu bin%s with a p above %g of its "

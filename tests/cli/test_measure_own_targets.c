@@ -136,6 +136,7 @@ static void test_constrained_bonds_are_a_known_law(void **state) {
     assert_contains(result.err, "bond \"AB\": a constraint (standard deviation 0.0003, mean");
     explain();
     assert_contains(result.out, "chosen: bond \"AB\": a constraint");
+    assert_contains(result.out, "standard deviation 0.0015, 1 % of the mean");
     assert_close_relative(number_after(result.out, "a harmonic potential with k = "),
                           8.314462618e-3 * 300 / (0.0015 * 0.0015), 1e-3);
     assert_null(strstr(result.out, "target bond_lengths"));
