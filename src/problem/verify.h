@@ -34,6 +34,7 @@ struct verification {
     double diffusion_begin, diffusion_end; ///< times between which D is the MSD's slope [τ]; or 0
     char warning[512]; ///< why its temperatures are not to be trusted; "" if they are
     struct verify_step step;
+    char dynamics[96]; ///< what a file that gives the time step must give, too; the caller's
     char unequilibrated[VERIFY_EQUILIBRIUM_SIZE]; ///< what is not in equilibrium; "" if all is
     bool by_engine;                               ///< another engine has simulated
     uint64_t engine_steps;                        ///< of those that had not settled, too

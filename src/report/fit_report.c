@@ -351,10 +351,10 @@ static void print_step(struct progress *to, const struct fit_file *fit,
     if (fit->method->kind == INVERSE_MATCHING && mf_fit_step_was_shortened(v))
         mf_progress_print(to,
                           "mesofit: warning: the fit simulated its candidates with the longer time "
-                          "step, whose error is part of what it found: \"time_step\": %.3g%s in "
-                          "the scene, and fit again",
+                          "step, whose error is part of what it found: \"scene.time_step\": "
+                          "%.3g%s%s, and fit again",
                           mf_units_factor(units, "tau") * v->step.used,
-                          mf_units_suffix(units, "tau", unit));
+                          mf_units_suffix(units, "tau", unit), v->dynamics);
 }
 
 /// What was found of a state, or of the only one.

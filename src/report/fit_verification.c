@@ -44,6 +44,14 @@ static const char *part_text(int halvings) {
     return parts[halvings];
 }
 
+void mf_fit_step_add_dynamics(const struct fit_file *fit, struct verification *verification) {
+    verification->dynamics[0] = '\0';
+    if (fit->inner_steps > 0)
+        snprintf(verification->dynamics, sizeof verification->dynamics,
+                 " and \"scene.dynamics\": {\"integrator\": \"%s\", \"inner_steps\": %lld}",
+                 fit->scene.setup.integrator->name, (long long)fit->inner_steps);
+}
+
 bool mf_fit_step_was_shortened(const struct verification *verification) {
     return verification->step.halvings > 0;
 }
@@ -77,8 +85,8 @@ static void find_step_cause(const struct verification *verification, const struc
                  off, used, part_text(step->halvings));
     else if (step->result == VERIFY_STEP_LONG)
         snprintf(text, FIT_STEP_TEXT_SIZE,
-                 "%s: the time step, %s, is too long for this potential; use about %s", off, used,
-                 time_text(units, round_down(step->would_hold), holds));
+                 "%s: the time step, %s, is too long for this potential; use about %s%s", off, used,
+                 time_text(units, round_down(step->would_hold), holds), verification->dynamics);
 }
 
 void mf_fit_step_text(const struct verification *verification, const struct units *units,
@@ -130,12 +138,13 @@ static void find_cause(const struct verification *verification, double temperatu
     static const double tension = 3; // standard errors
     const struct thermodynamics_summary *found = &verification->thermodynamics;
     const bool holds = verification->step.result == VERIFY_STEP_HOLDS;
-    const char *known = NULL;
+    const char *known = NULL, *dynamics = "";
     find_step_cause(verification, units, cause);
-    if (found->temperature / temperature < 1 - hot)
+    if (found->temperature / temperature < 1 - hot) {
         known = "the friction is too weak to hold the temperature: increase the \"dissipative\" "
                 "friction or shorten \"verification.time_step\"";
-    else if (cause[0])
+        dynamics = verification->dynamics;
+    } else if (cause[0])
         return;
     else if (found->temperature / temperature > 1 + hot)
         known = "the temperature is off, and there are too few \"samples\" to tell whether the "
@@ -151,7 +160,7 @@ static void find_cause(const struct verification *verification, double temperatu
             "so that another temperature, density or target is needed",
             verification->unequilibrated);
     else if (known)
-        snprintf(cause, FIT_STEP_TEXT_SIZE, "%s", known);
+        snprintf(cause, FIT_STEP_TEXT_SIZE, "%s%s", known, dynamics);
     else if (verification->sampled > 0 && verification->sampled != verification->particles)
         snprintf(
             cause, FIT_STEP_TEXT_SIZE,
@@ -260,8 +269,8 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
         if (mf_fit_step_shifts_pressure(verification))
             snprintf(cause, sizeof cause,
                      "its time step shifts it by about %.2g, as the configurational temperature "
-                     "shows: set a shorter \"verification.time_step\"",
-                     bar * verification->shift.pressure);
+                     "shows: set a shorter \"verification.time_step\"%s",
+                     bar * verification->shift.pressure, verification->dynamics);
         else
             find_cause(verification, temperature, units, cause);
         snprintf(

@@ -6,6 +6,7 @@
 /// cavitates in a large one; a rough potential heats a simulation of too long a step.
 #pragma once
 
+#include "defaults/fit_file.h"
 #include "problem/verify.h"
 
 /// Why the verified g(r), or the pressure or an integral of Kirkwood and Buff if it was fitted, is
@@ -46,6 +47,11 @@ enum { FIT_STEP_TEXT_SIZE = 384 };
 /// step that the file gives and that holds. Tested: test_fit_time_step.
 void mf_fit_step_text(const struct verification *verification, const struct units *units,
                       char text[FIT_STEP_TEXT_SIZE]);
+
+/// ' and "scene.dynamics": {…}' into the verification where the fit chose inner steps for its time
+/// step: beside one that the file gives it chooses none. "" elsewhere. Tested:
+/// test_fit_verification.
+void mf_fit_step_add_dynamics(const struct fit_file *fit, struct verification *verification);
 
 /// Whether the time step shifts the verification's pressure by more than the errors of both.
 bool mf_fit_step_shifts_pressure(const struct verification *verification);

@@ -107,6 +107,7 @@ static enum status verify_state(const struct fit_file *state, int round, double 
     status = mf_verify(&laws.problem, laws.table[UNKNOWN_POTENTIAL], laws.table[UNKNOWN_OMEGA],
                        &parameters, listener, verification);
     CHECK(advise(state, &verification->step, status));
+    mf_fit_step_add_dynamics(state, verification);
     verification->sampled = sampled_particles(state);
     mf_fit_verification_add_units(&state->scene.units, verification);
 done:

@@ -127,6 +127,35 @@ static void test_fit_verification_names_friction_when_the_beads_are_cold(void **
                        "error 0.18) at T = 1, pressure 2: the friction is too weak");
 }
 
+/// Inner steps are chosen with the time step alone: who gives that gives them, too.
+static void test_fit_verification_names_inner_steps_beside_a_time_step(void **state) {
+    static const char words[] =
+        " and \"scene.dynamics\": {\"integrator\": \"aboba\", \"inner_steps\": 4}";
+    static struct fit_file fit = {.scene.setup.integrator = &mf_aboba, .inner_steps = 4};
+    char reason[INVERSE_REASON_SIZE], said[128];
+    (void)state;
+    struct verification found = make(0.045, 1, 2);
+    mf_fit_step_add_dynamics(&fit, &found);
+    snprintf(said, sizeof said, "shorten \"verification.time_step\"%s", words);
+    assert_says(&found, said);
+    found = make(0.0021, 1.5, 1.9);
+    mf_fit_step_add_dynamics(&fit, &found);
+    found.agreement[TARGET_PRESSURE].distance = (struct target_distance){.rms = 0.4, .noise = 0.1};
+    found.shift = (struct thermodynamics_shift){-0.35, 0.05};
+    assert_true(contradicts(&found, &with_pressure, reason));
+    snprintf(said, sizeof said, "set a shorter \"verification.time_step\"%s", words);
+    assert_contains(reason, said);
+    found.step =
+        (struct verify_step){.used = 0.01, .would_hold = 0.006, .result = VERIFY_STEP_LONG};
+    char text[FIT_STEP_TEXT_SIZE];
+    mf_fit_step_text(&found, NULL, text);
+    snprintf(said, sizeof said, "use about 0.006 tau%s", words);
+    assert_contains(text, said);
+    fit.inner_steps = 0;
+    mf_fit_step_add_dynamics(&fit, &found);
+    assert_string_equal(found.dynamics, "");
+}
+
 /// g(r) within its noise, at a temperature that the friction does not hold.
 static void test_fit_verification_names_the_temperature_when_it_is_off(void **state) {
     (void)state;
@@ -232,6 +261,7 @@ int main(void) {
         cmocka_unit_test(test_fit_verification_sees_each_pair_type_that_was_fitted),
         cmocka_unit_test(test_fit_verification_names_the_cause_when_g_is_off),
         cmocka_unit_test(test_fit_verification_names_friction_when_the_beads_are_cold),
+        cmocka_unit_test(test_fit_verification_names_inner_steps_beside_a_time_step),
         cmocka_unit_test(test_fit_verification_names_the_temperature_when_it_is_off),
         cmocka_unit_test(test_fit_verification_names_the_pressure_when_it_was_fitted_and_is_off),
         cmocka_unit_test(test_fit_verification_names_an_integral_when_it_was_fitted_and_is_off),
