@@ -227,6 +227,30 @@ enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) 
     return keep(inversion);
 }
 
+/// From another start.
+static enum status begin_again(struct inversion *inversion,
+                               enum status (*start)(struct inversion_state *, double *)) {
+    struct inversion_progress *progress = &inversion->course.progress;
+    const size_t widest = mf_inversion_states_widest(inversion->state, inversion->states);
+    progress->best.distance[TARGET_RDF].rms = progress->min_decrement = INFINITY;
+    progress->damping = 1;
+    progress->from_disorder = progress->second_start = true;
+    progress->drifts = (struct inversion_drifts){0};
+    return start(&inversion->state[widest], inversion->course.phi);
+}
+
+/// Whether the second start, as sampled now, is much farther from the targets than the first was,
+/// which was left as its samples had not settled, or as the first step from it was too long.
+static bool is_farther_than_first(struct inversion *inversion) {
+    static const double times = 4;
+    double *const first = &inversion->course.progress.first_start;
+    const bool farther =
+        *first > 0 && mf_targets_error(&inversion->problem->targets,
+                                       inversion->assessment.distance) > times * *first;
+    *first = 0;
+    return farther;
+}
+
 enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
     struct inversion_progress *progress = &inversion->course.progress;
     if (mf_inversion_start_has_trial(inversion, kept)) {
@@ -235,14 +259,14 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
         mf_inversion_start_try(inversion);
         return STATUS_OK;
     }
+    if (is_farther_than_first(inversion))
+        return begin_again(inversion, mf_inversion_start);
     if (!mf_inversion_start_is_poor(inversion, kept)) {
         mf_inversion_take_step(inversion);
         return STATUS_OK;
     }
-    progress->best.distance[TARGET_RDF].rms = progress->min_decrement = INFINITY;
-    progress->damping = 1;
-    progress->from_disorder = progress->second_start = true;
-    progress->drifts = (struct inversion_drifts){0};
-    const size_t widest = mf_inversion_states_widest(inversion->state, inversion->states);
-    return mf_inversion_start_again(&inversion->state[widest], inversion->course.phi);
+    if (!kept)
+        progress->first_start =
+            mf_targets_error(&inversion->problem->targets, progress->best.distance);
+    return begin_again(inversion, mf_inversion_start_again);
 }

@@ -50,6 +50,8 @@ struct inversion_progress {
                             ///< time that nothing but their noise in A kept the fit from its end;
                             ///< 0: none of the kind yet
     bool second_start;      ///< it began again, from −k_B T ln g
+    double first_start;     ///< error of the start before that, until it is known which is nearer,
+                            ///< 0: none
     bool lost;              ///< none of the starts settled
     bool gave_up;           ///< the last samples had not settled when they had cost enough
     bool weighs_starts;     ///< the start that the target alone says is tried beside that of forces
@@ -103,7 +105,8 @@ bool mf_inversion_keeps(struct inversion *inversion);
 /// NO_MEMORY.
 enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) MUST_USE;
 
-/// The next potential to be sampled: the other start, or a step from the best. Fails: NO_MEMORY.
+/// The next potential to be sampled: the other start, the first again if that is much farther, or a
+/// step from the best. Fails: NO_MEMORY.
 enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) MUST_USE;
 
 /// Lengthen the steps after one that is kept, by half, or shorten them if it went much too far: if

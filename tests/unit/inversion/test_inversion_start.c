@@ -131,6 +131,36 @@ static void test_inversion_start_is_poor_when_g_is_far_off_under_tension(void **
     clear(&made);
 }
 
+/// A start is left when its samples do not settle, or its first step is too long; where the other
+/// one is much farther from the target the fit goes back to it.
+static void test_inversion_goes_back_to_a_start_that_was_much_nearer(void **state) {
+    static const double first = 0.03, second[] = {0.1, 1.9};
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        struct made made;
+        make(&made, INVERSION_FROM_HNC);
+        assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
+        struct inversion_progress *progress = &made.inversion.course.progress;
+        struct target_distance *distance = made.inversion.assessment.distance;
+        const double *phi = made.inversion.course.phi;
+        const size_t well = 75;
+        const double from_hnc = phi[well];
+        progress->iteration = 1;
+        progress->best.distance[TARGET_RDF] = (struct target_distance){.rms = first, .noise = 0.01};
+        assert_ok(mf_inversion_course_go_on(&made.inversion, false));
+        const double from_mean_force = phi[well];
+        assert_true(fabs(from_mean_force - from_hnc) > 1e-3 * fabs(from_hnc));
+        progress->iteration = 2;
+        distance[TARGET_RDF] = (struct target_distance){.rms = second[k], .noise = 0.01};
+        progress->best.distance[TARGET_RDF] = distance[TARGET_RDF];
+        assert_ok(mf_inversion_course_go_on(&made.inversion, true));
+        assert_true(isinf(progress->best.distance[TARGET_RDF].rms) == (k == 1));
+        if (k == 1)
+            assert_float_equal(phi[well], from_hnc, 1e-9 * fabs(from_hnc));
+        clear(&made);
+    }
+}
+
 /// Samples of S that scatter about the target's, and their C.
 static void sample(struct inversion_state *state, uint32_t seed) {
     enum { SAMPLES = 40 };
@@ -344,6 +374,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_start_is_poor_when_g_is_far_off_under_tension),
         cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
         cmocka_unit_test(test_inversion_band_counts_the_ramp_that_is_asked_for),
+        cmocka_unit_test(test_inversion_goes_back_to_a_start_that_was_much_nearer),
         cmocka_unit_test(test_inversion_second_start_begins_with_no_response_and_no_drifts),
         cmocka_unit_test(test_inversion_create_refuses_a_hole_beyond_the_core),
         cmocka_unit_test(test_inversion_create_makes_one_sampler_for_a_trial),
