@@ -70,7 +70,7 @@ static void test_numbers_that_no_liquid_has_are_doubted(void **state) {
         {"\"time_step\": 0.003", "\"time_step\": 0.3",
          "warning: scene.time_step: in 0.3 ps a bead moves 0.36 of the distance"},
         {"\"time_step\": 0.003", "\"time_step\": 0.08",
-         "warning: scene.time_step: 0.08 ps is 31 times as long as the program would choose"},
+         "warning: scene.time_step: 0.08 ps is 32 times as long as the program would choose"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
         assert_doubted(*state, "fit", water, cases[k][0], cases[k][1], cases[k][2]);
