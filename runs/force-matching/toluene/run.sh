@@ -10,7 +10,7 @@ mesofit=${MESOFIT:-mesofit} gmx=${GMX:-gmx} beads=343
 mkdir -p out
 cp map.json toluene.itp toluene.gro ../methanol/em.mdp out
 for stage in npt nvt; do
-    sed 's/constraints = .*/constraints = h-bonds/' ../methanol/$stage.mdp >out/$stage.mdp
+    sed 's/constraints = .*/constraints = h-bonds/; s/nsteps = 25000/nsteps = 50000/' ../methanol/$stage.mdp >out/$stage.mdp
 done
 cd out
 "$gmx" insert-molecules -ci toluene.gro -nmol $beads -box 4.6 4.6 4.6 -seed 1 -try 100 -o start.gro
