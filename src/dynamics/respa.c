@@ -134,11 +134,10 @@ int64_t mf_respa_inner_steps(const struct integrator *integrator, const void *pa
     return inner_steps ? *inner_steps : 1;
 }
 
-bool mf_respa_set(const struct integrator *integrator, void *parameters, int64_t inner_steps) {
+void mf_respa_set(const struct integrator *integrator, void *parameters, int64_t inner_steps) {
     int64_t *const field = find_field(integrator, parameters);
     if (field)
         *field = inner_steps;
-    return field != NULL;
 }
 
 bool mf_respa_acts(const struct simulation_setup *setup) {

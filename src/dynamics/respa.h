@@ -59,8 +59,8 @@ enum status mf_respa_step(struct respa *respa, struct simulation *simulation,
 /// How many an integrator takes by its parameters; 1 of one that has none.
 int64_t mf_respa_inner_steps(const struct integrator *integrator, const void *parameters);
 
-/// Set them, of an integrator that has some. Returns whether it has.
-bool mf_respa_set(const struct integrator *integrator, void *parameters, int64_t inner_steps);
+/// Set them, of an integrator that has some.
+void mf_respa_set(const struct integrator *integrator, void *parameters, int64_t inner_steps);
 
 /// Whether the integrator of a setup has inner steps.
 bool mf_respa_acts(const struct simulation_setup *setup);

@@ -199,6 +199,15 @@ static enum status accept_trial(struct inversion *inversion, bool *kept) {
     return keep(inversion);
 }
 
+/// Whether the second start, as sampled now, is much farther from the targets than the first was,
+/// which was left as its samples had not settled, or as the first step from it was too long.
+static bool is_farther_than_first(const struct inversion *inversion) {
+    static const double times = 4;
+    const double first = inversion->course.progress.first_start;
+    return first > 0 && mf_targets_error(&inversion->problem->targets,
+                                         inversion->assessment.distance) > times * first;
+}
+
 enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) {
     struct inversion_progress *progress = &inversion->course.progress;
     const struct inversion_assessment *assessment = &inversion->assessment;
@@ -210,7 +219,8 @@ enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) 
     progress->from_disorder = !*kept;
     progress->gave_up = assessment->unequilibrated.found && assessment->unequilibrated.for_long;
     progress->lost = start && !*kept && !mf_inversion_start_has_trial(inversion, false) &&
-                     !mf_inversion_start_is_poor(inversion, false);
+                     !mf_inversion_start_is_poor(inversion, false) &&
+                     !is_farther_than_first(inversion);
     if (start && !*kept)
         return keep(inversion); // to have something to show
     if (start)
@@ -239,18 +249,6 @@ static enum status begin_again(struct inversion *inversion,
     return start(&inversion->state[widest], inversion->course.phi);
 }
 
-/// Whether the second start, as sampled now, is much farther from the targets than the first was,
-/// which was left as its samples had not settled, or as the first step from it was too long.
-static bool is_farther_than_first(struct inversion *inversion) {
-    static const double times = 4;
-    double *const first = &inversion->course.progress.first_start;
-    const bool farther =
-        *first > 0 && mf_targets_error(&inversion->problem->targets,
-                                       inversion->assessment.distance) > times * *first;
-    *first = 0;
-    return farther;
-}
-
 enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
     struct inversion_progress *progress = &inversion->course.progress;
     if (mf_inversion_start_has_trial(inversion, kept)) {
@@ -259,7 +257,9 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
         mf_inversion_start_try(inversion);
         return STATUS_OK;
     }
-    if (is_farther_than_first(inversion))
+    const bool farther = is_farther_than_first(inversion);
+    progress->first_start = 0;
+    if (farther)
         return begin_again(inversion, mf_inversion_start);
     if (!mf_inversion_start_is_poor(inversion, kept)) {
         mf_inversion_take_step(inversion);
