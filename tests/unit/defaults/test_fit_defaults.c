@@ -244,6 +244,39 @@ static void test_fit_defaults_cut_the_steps_of_pairs_for_bonds(void **state) {
     }
 }
 
+/// Lengths of a bond of k = 3000 in bins from a third to all of their standard deviation, 0.018,
+/// which each have the mean of a normal density: its frequency is found within an eighth.
+static void test_fit_defaults_know_a_bond_by_coarse_bins(void **state) {
+    static const double width[] = {0.006, 0.012, 0.018};
+    const double deviation = sqrt(1.0 / 3000), omega = sqrt(2 * 3000);
+    write_target(state, 0.002);
+    for (int k = 0; k < 3; k++) {
+        struct fit_file fit;
+        char text[8192];
+        int length = snprintf(text, sizeof text, "# r[lambda]\tp[1/lambda]\tp_error[1/lambda]\n");
+        for (double r = 0.5 * width[k]; r < 1; r += width[k])
+            length += snprintf(text + length, sizeof text - (size_t)length, "%.4f %.8g 0.01\n", r,
+                               (erf((r + 0.5 * width[k] - 0.601) / deviation * M_SQRT1_2) -
+                                erf((r - 0.5 * width[k] - 0.601) / deviation * M_SQRT1_2)) /
+                                   (2 * width[k]));
+        temporary_folder_write(*state, "bonds.tsv", text, (size_t)length);
+        snprintf(text, sizeof text,
+                 "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}, \"bond_lengths\": {\"stick\": "
+                 "{\"file\": \"bonds.tsv\"}}}, \"scene\": {\"box\": [9.1, 9.1, 9.1], "
+                 "\"molecules\": {\"dimer\": {\"count\": 113, \"chain\": {\"type\": \"A\", "
+                 "\"length\": 2, \"bond\": \"stick\"}}}}}");
+        assert_ok(read_run(state, &fit, "run.json", text));
+        const struct simulation_setup *const setup = &fit.scene.setup;
+        const int64_t inner = mf_respa_inner_steps(setup->integrator, setup->integrator_parameters);
+        const double turn = omega * setup->time_step / (double)inner;
+        print_message("bins of %g: step %g of %lld: %g of the variance\n", width[k],
+                      setup->time_step, (long long)inner, turn * turn / 4);
+        assert_true(inner > 1 && omega * setup->time_step <= 0.9 * 9 / 8);
+        assert_true(turn * turn / 4 < 0.003 * pow(9.0 / 8, 2));
+        mf_fit_file_clear(&fit);
+    }
+}
+
 /// A bead without velocities relaxes in γ/2Φ'', which a step of Euler's must stay far below, and
 /// diffuses: twice the friction makes all of that twice as slow.
 static void test_fit_defaults_choose_time_steps_by_the_friction_without_velocities(void **state) {
@@ -480,6 +513,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_how_many_beads_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_no_count_beside_a_file_of_places),
         IN_FOLDER(test_fit_defaults_cut_the_steps_of_pairs_for_bonds),
+        IN_FOLDER(test_fit_defaults_know_a_bond_by_coarse_bins),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
         IN_FOLDER(test_fit_defaults_cut_g_at_half_of_a_box_that_is_given),
