@@ -67,6 +67,9 @@ enum status mf_fit_choice_give_omega(const struct fit_choice *choice, const char
 /// it: then it is only doubted.
 void mf_fit_defaults_time_step(struct fit_choice *choice);
 
+/// No molecule is longer than its bonds, one after the other [λ].
+double mf_fit_longest_molecule(const struct fit_choice *choice);
+
 /// σ of ω = σ (1 − r/cutoff) with which a bead loses its velocity in the time in which it would
 /// reach its neighbours [sqrt(μ/τ)].
 double mf_fit_defaults_sigma(const struct fit_choice *choice, double cutoff);

@@ -5,6 +5,7 @@
 #include "defaults/methods.h"
 #include "inversion/inversion.h"
 #include "problem/evaluate.h"
+#include "system/scaled_system.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -103,15 +104,30 @@ double mf_fit_defaults_precision(const struct fit_choice *c) {
                  : fmax(part_of_target * c->scales.noise, fmin(max, fmax(min, c->scales.noise)));
 }
 
-/// A system that is large enough for the range.
+/// Molecules are sampled in a smaller system only if that is half of the scene at most: what is
+/// saved is equilibration.
+static const double worth_it = 0.5;
+
+/// A system that is large enough for the range, whatever the shape of the box, and in which no
+/// molecule meets its own image; 0: that of the scene. States of other densities have other
+/// particles in a box of one width.
 static double choose_particles(const struct fit_choice *c) {
     static const double min = 700, margin = 2.15, distortion = 0.05;
     const struct inversion_parameters *given = said(c, "particles");
+    const bool joined = scene_has_molecules(&c->fit->scene.molecules);
     if (given)
-        return given->particles > 0 ? (double)given->particles : c->count;
-    const double wanted =
-        ceil(fmax(min, c->density * pow(margin * fit_choice_reach(c), c->dimensions)));
-    return (double)mf_composition_min_particles(c->rdf->composition, (int64_t)wanted, distortion);
+        return (double)given->particles;
+    if (c->fit->name[0] || c->fit->engine.kind != ENGINE_NONE)
+        return 0;
+    const double reach = fit_choice_reach(c);
+    const double width = fmax(margin * reach, joined ? reach + mf_fit_longest_molecule(c) : 0);
+    const double share = pow(width / mf_box_shortest(&c->fit->scene.setup.box), c->dimensions);
+    const double wanted = ceil(fmax(min, share * c->count));
+    if (joined && wanted > worth_it * c->count)
+        return 0;
+    return (double)mf_scaled_system_min(c->rdf->composition,
+                                        joined ? &c->fit->scene.molecules.molecules.topology : NULL,
+                                        (int64_t)wanted, distortion);
 }
 
 enum status mf_fit_defaults_take_method(struct fit_choice *c, const struct inverse_method *method) {
@@ -181,20 +197,17 @@ enum status mf_fit_defaults_method(struct fit_choice *c) {
     const double particles = choose_particles(c);
     TRY(mf_fit_defaults_take_method(c, method));
     if (both || !simulates) {
-        // States of other densities have other particles in a box of that width.
-        const bool joined = scene_has_molecules(&c->fit->scene.molecules) || c->fit->name[0] ||
-                            c->fit->engine.kind != ENGINE_NONE;
-        const double own = joined && !said(c, "particles") ? c->count : particles;
         char others[64] = "";
-        if (own != c->count)
+        if (particles > 0 && particles != c->count)
             snprintf(others, sizeof others, ", not the %.0f of the scene and of its verification",
                      c->count);
         mf_fit_choice_note(
             c,
             "method \"%s\": it finds the potential from g(r) by samples of %.0f particles%s, until "
             "their g is known within %.2g; the target's is within %.2g",
-            method->name, own, others, c->precision, c->scales.noise);
-        if (!joined)
+            method->name, particles > 0 ? particles : c->count, others, c->precision,
+            c->scales.noise);
+        if (particles > 0)
             give_to_method(c, both ? "potential_particles" : "particles", particles);
         give_to_method(c, both ? "potential_precision" : "precision", c->precision);
     }

@@ -56,19 +56,32 @@ static double fastest_of(const struct fit_choice *c, int order, size_t g, double
     return mf_hybrid_step_squared_frequency(order, variance, length, temperature) / c->mass;
 }
 
-static double shortest_bond(const struct fit_choice *c) {
-    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
+/// Where a group of bonds is most often, by its target or by its law [λ].
+static double length_of(const struct fit_choice *c, size_t g) {
     const struct target_groups *bonds = target_files_groups(&c->fit->files, BONDED_BOND);
-    double length = INFINITY, mean, variance;
-    for (size_t g = 0; g < (size_t)molecules->groups[BONDED_BOND]; g++) {
-        if (target_groups_have(bonds, g))
-            find_well(&bonds->member[g], &mean, &variance);
-        else
-            mean = mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve,
-                                   c->fit->scene.setup.temperature);
-        length = fmin(length, mean);
-    }
+    double mean, variance;
+    if (!target_groups_have(bonds, g))
+        return mf_bonded_reach(&c->fit->scene.molecules.molecules.group[BONDED_BOND][g].curve,
+                               c->fit->scene.setup.temperature);
+    find_well(&bonds->member[g], &mean, &variance);
+    return mean;
+}
+
+static double shortest_bond(const struct fit_choice *c) {
+    double length = INFINITY;
+    for (int g = 0; g < c->fit->scene.molecules.molecules.groups[BONDED_BOND]; g++)
+        length = fmin(length, length_of(c, (size_t)g));
     return length;
+}
+
+double mf_fit_longest_molecule(const struct fit_choice *c) {
+    const struct molecules *molecules = &c->fit->scene.molecules.molecules;
+    double bond = 0, bonds = 0;
+    for (int g = 0; g < molecules->groups[BONDED_BOND]; g++)
+        bond = fmax(bond, length_of(c, (size_t)g));
+    for (int k = 0; k < molecules->topology.kinds; k++)
+        bonds = fmax(bonds, molecules->topology.kind[k].beads - 1);
+    return bonds * bond;
 }
 
 static double find_relaxing_step(const struct fit_choice *c, double curvature, double allowed) {

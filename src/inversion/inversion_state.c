@@ -3,37 +3,70 @@
 // What a state is made of: its system, its memory.
 #include "inversion/inversion_state.h"
 #include "inversion/inversion_low_rank.h"
+#include "system/scaled_system.h"
 
 #include <math.h>
 
-/// By which the share of a type may change with the number of particles: rare types are rounded,
-/// and keep two beads.
+/// By which the share of a type or of a kind of molecules may change with the number of particles:
+/// rare ones are rounded, and keep two.
 static const double max_distortion = 0.2;
+
+const struct topology *mf_inversion_topology(const struct inversion_state *state) {
+    const struct simulation_setup *scene = &state->problem->scene;
+    const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
+    if (state->topology.kinds > 0)
+        return &state->topology;
+    return molecules ? &molecules->topology : NULL;
+}
+
+static enum status check_shares(const struct inversion_state *state,
+                                const struct topology *topology, int64_t wanted,
+                                const struct scaled_system *system) {
+    const struct composition *composition = &state->problem->scene.composition;
+    if (system->distortion <= max_distortion)
+        return STATUS_OK;
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "method.particles: %lld change the share of %s by %.0f %%; %lld are the next that keep all "
+        "shares",
+        (long long)wanted, topology ? "a type or of a kind of molecules" : "a type",
+        100 * system->distortion,
+        (long long)mf_scaled_system_min(composition, topology, wanted, max_distortion));
+}
+
+/// Of each pair one image is in range.
+static enum status check_edge(const struct inversion_state *state, int64_t wanted) {
+    const struct simulation_setup *scene = &state->problem->scene;
+    const double range = mf_rdf_bins_range(&state->problem->targets.bins);
+    const double edge = mf_box_shortest(&state->box);
+    const double share = pow(2 * range / mf_box_shortest(&scene->box), scene->box.dimensions);
+    if (!state->problem->unknown[UNKNOWN_POTENTIAL].wanted || edge >= 2 * range)
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "method.particles: %lld make a box whose shortest edge, %g" STATUS_LENGTH
+                          ", is below twice the range of g(r), %g" STATUS_LENGTH
+                          "; %.0f are the least",
+                          (long long)wanted, edge, range,
+                          ceil(share * (double)mf_composition_particles(&scene->composition)));
+}
 
 /// As many particles as are asked for, at the densities of the scene.
 static enum status choose_size(struct inversion_state *state) {
     const struct simulation_setup *scene = &state->problem->scene;
+    const struct topology *topology = mf_inversion_topology(state);
     const int64_t wanted = state->problem->engine ? 0 : state->parameters->particles;
     const int64_t count = mf_composition_particles(&scene->composition);
-    if (wanted > 0 && wanted != count && mf_molecules_find(scene->interaction, scene->interactions))
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "method.particles: molecules are sampled in the scene's box, with "
-                              "all of its %lld beads; leave it out",
-                              (long long)count);
-    state->composition =
-        wanted > 0 ? mf_composition_scaled(&scene->composition, wanted) : scene->composition;
-    state->box =
-        mf_box_scaled(&scene->box, (double)mf_composition_particles(&state->composition) /
-                                       (double)mf_composition_particles(&scene->composition));
-    const double distortion = mf_composition_distortion(&scene->composition, &state->composition);
-    if (distortion <= max_distortion)
+    state->composition = scene->composition;
+    state->box = scene->box;
+    if (wanted <= 0 || wanted == count)
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "method.particles: %lld change the share of a type by %.0f %%; %lld are the "
-        "next that keep all shares",
-        (long long)wanted, 100 * distortion,
-        (long long)mf_composition_min_particles(&scene->composition, wanted, max_distortion));
+    const struct scaled_system system = mf_scaled_system(&scene->composition, topology, wanted);
+    TRY(check_shares(state, topology, wanted, &system));
+    state->composition = system.composition;
+    state->box = mf_box_scaled(&scene->box, (double)mf_composition_particles(&system.composition) /
+                                                (double)count);
+    TRY(check_edge(state, wanted));
+    return topology ? mf_scaled_system_topology(&system, topology, &state->topology) : STATUS_OK;
 }
 
 /// Local densities act by their forces alone.
@@ -142,6 +175,8 @@ enum status mf_inversion_tabulate(struct inversion_state *state) {
         TRY(mf_potential_grid_table(grid, state->phi, &state->interaction.table));
     if (molecules)
         TRY(mf_potential_grid_molecules(grid, energy, molecules, &state->interaction.molecules));
+    if (state->topology.kinds > 0)
+        state->interaction.molecules.topology = state->topology;
     if (many_body) {
         TRY(mf_potential_grid_many_body(grid, energy, many_body, &state->interaction.many_body));
         state->interaction.many_body.composition = state->composition;
@@ -183,6 +218,7 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     mf_replicas_clear(&state->replicas);
     clear_interaction(state);
     mf_potential_grid_clear(&state->grid);
+    mf_topology_clear(&state->topology);
     mf_inversion_basis_clear(&state->basis);
     mf_inversion_basis_clear(&state->low_rank);
     mf_inversion_kirkwood_buff_clear(&state->kirkwood_buff);

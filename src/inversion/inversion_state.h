@@ -68,7 +68,8 @@ struct inversion_state {
     struct potential_grid grid;
     struct box box; ///< of the system that is sampled
     struct composition composition;
-    size_t bins; ///< of all pair types and groups
+    struct topology topology; ///< of its molecules, if it is not as large as the scene
+    size_t bins;              ///< of all pair types and groups
     struct inversion_target target;
     struct sampler_group *groups; ///< that are counted, shape [grid.groups]
     struct inversion_interaction interaction;
@@ -110,6 +111,9 @@ enum status mf_inversion_state_init(struct inversion_state *state,
                                     const struct inverse_problem *problem,
                                     const struct inversion_parameters *parameters,
                                     const struct inversion_basis_size *coefficients) MUST_USE;
+
+/// The molecules of the system that is sampled; NULL: it has none.
+const struct topology *mf_inversion_topology(const struct inversion_state *state);
 
 /// Make the samplers of the present potential. Fails: as mf_replicas_init.
 enum status mf_inversion_state_make_samplers(struct inversion_state *state) MUST_USE;

@@ -87,13 +87,13 @@ static double peak_of(const struct bonded_grid *group) {
 /// S* and its error of a group; `ideal` is S where p is its mean over the known bins.
 static void set_group(struct inversion_state *state, const struct potential_group *group) {
     const struct inverse_problem *problem = state->problem;
-    const struct simulation_setup *scene = &problem->scene;
     const struct bonded_unknown *unknown = group->own.unknown;
     const double *error =
         problem->targets.target[mf_group_kind_target(unknown->order)].error + unknown->first;
     const double mean = mf_bonded_grid_mean(&group->own), peak = peak_of(&group->own);
-    const double terms = (double)mf_group_kind_terms(
-        scene, unknown, (size_t)mf_composition_particles(&state->composition));
+    const double terms =
+        (double)mf_group_kind_terms(mf_inversion_topology(state), unknown,
+                                    (size_t)mf_composition_particles(&state->composition));
     const double unit = unknown->bins.width * terms;
     for (size_t k = 0; k < unknown->bins.count; k++) {
         const size_t bin = group->bin + k;

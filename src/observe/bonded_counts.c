@@ -135,7 +135,8 @@ size_t mf_bonded_series_blocks(const struct bonded_state *const *states, size_t 
 void mf_bonded_series_find(const struct bonded_state *const *states, size_t count, int group,
                            size_t blocks, double *series) {
     const struct bonded_state *s = states[0];
-    const double terms = (double)mf_bonded_distribution_terms(s->molecules, s->order, group);
+    const double terms =
+        (double)mf_bonded_distribution_terms(&s->molecules->topology, s->order, group);
     const size_t bins = s->bins[group].count;
     for (size_t bin = 0; bin < bins; bin++)
         for (size_t n = 0; n < count * blocks; n++) {

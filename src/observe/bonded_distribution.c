@@ -44,10 +44,10 @@ int mf_bonded_distribution_kind(int order) {
     return kind;
 }
 
-size_t mf_bonded_distribution_terms(const struct molecules *molecules, int order, int group) {
+size_t mf_bonded_distribution_terms(const struct topology *topology, int order, int group) {
     size_t terms = 0;
-    for (int k = 0; k < molecules->topology.kinds; k++) {
-        const struct topology_kind *kind = &molecules->topology.kind[k];
+    for (int k = 0; k < topology->kinds; k++) {
+        const struct topology_kind *kind = &topology->kind[k];
         for (int t = 0; t < kind->terms[order]; t++)
             terms += kind->term[order][t].group == group ? (size_t)kind->count : 0;
     }

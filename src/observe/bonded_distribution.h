@@ -36,7 +36,7 @@ int mf_bonded_distribution_kind(int order);
 int mf_bonded_distribution_order(int kind);
 
 /// Terms of a group in all molecules.
-size_t mf_bonded_distribution_terms(const struct molecules *molecules, int order, int group);
+size_t mf_bonded_distribution_terms(const struct topology *topology, int order, int group);
 
 /// Add the terms of a group to the counts of the bins that they are in, shape [bins->count]. What
 /// is in no bin is not counted; dihedrals go round. The particles must be joined.

@@ -29,12 +29,11 @@ double mf_group_kind_jacobian(int order, int dimensions, const struct bonded_bin
                : mf_bonded_distribution_jacobian(order, dimensions, bins, bin);
 }
 
-size_t mf_group_kind_terms(const struct simulation_setup *scene,
-                           const struct bonded_unknown *unknown, size_t beads) {
+size_t mf_group_kind_terms(const struct topology *topology, const struct bonded_unknown *unknown,
+                           size_t beads) {
     if (unknown->order == INVERSE_LOCAL_DENSITY)
         return beads;
-    return mf_bonded_distribution_terms(mf_molecules_find(scene->interaction, scene->interactions),
-                                        unknown->order, unknown->group);
+    return mf_bonded_distribution_terms(topology, unknown->order, unknown->group);
 }
 
 const struct weighted_density_settings *mf_group_kind_density(const struct targets *targets) {

@@ -21,9 +21,9 @@ bool mf_group_kind_is_possible(int order, double value);
 double mf_group_kind_jacobian(int order, int dimensions, const struct bonded_bins *bins,
                               size_t bin);
 
-/// Terms, or beads with such an energy, in a scene of so many beads.
-size_t mf_group_kind_terms(const struct simulation_setup *scene,
-                           const struct bonded_unknown *unknown, size_t beads);
+/// Terms of molecules, or beads with such an energy, in a system of so many beads.
+size_t mf_group_kind_terms(const struct topology *topology, const struct bonded_unknown *unknown,
+                           size_t beads);
 
 /// The weight of the target of local densities, and its bins.
 const struct weighted_density_settings *mf_group_kind_density(const struct targets *targets);

@@ -29,26 +29,6 @@ struct composition mf_composition_scaled(const struct composition *composition, 
     return scaled;
 }
 
-double mf_composition_distortion(const struct composition *from, const struct composition *to) {
-    const double scale =
-        (double)mf_composition_particles(from) / (double)mf_composition_particles(to);
-    double largest = 0;
-    for (int type = 0; type < from->types; type++)
-        if (from->count[type] > 1)
-            largest = fmax(largest,
-                           fabs(scale * (double)to->count[type] / (double)from->count[type] - 1));
-    return largest;
-}
-
-int64_t mf_composition_min_particles(const struct composition *composition, int64_t particles,
-                                     double distortion) {
-    for (;; particles++) { // a multiple of the whole is exact
-        const struct composition scaled = mf_composition_scaled(composition, particles);
-        if (mf_composition_distortion(composition, &scaled) <= distortion)
-            return particles;
-    }
-}
-
 int mf_composition_pairs(const struct composition *composition) {
     const int types = composition->types;
     return types > 1 ? types * (types + 1) / 2 : 1;

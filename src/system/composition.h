@@ -33,15 +33,6 @@ int64_t mf_composition_particles(const struct composition *composition);
 /// pairs of it, and one if it has no more, so that there are none.
 struct composition mf_composition_scaled(const struct composition *composition, int64_t particles);
 
-/// Largest relative change of a type's share of all beads from one mixture to another. That of a
-/// single bead changes with any other number.
-double mf_composition_distortion(const struct composition *from, const struct composition *to);
-
-/// The smallest number of beads from `particles` on for which mf_composition_scaled changes no
-/// share by more than `distortion`.
-int64_t mf_composition_min_particles(const struct composition *composition, int64_t particles,
-                                     double distortion);
-
 static inline bool composition_is_mixed(const struct composition *composition) {
     return composition->types > 1;
 }

@@ -326,8 +326,8 @@ static void test_fit_molecules_refuses_what_cannot_be(void **state) {
          "\"truth/bond_lengths.tsv\"",
          {"target.bond_angles.bend.file: ", "as if in radians", NULL}},
         {"\"replicas\": 2, \"equilibration\": 40",
-         "\"particles\": 120",
-         {"method.particles: molecules are sampled in the scene's box", NULL}},
+         "\"particles\": 12",
+         {"method.particles: 12 make a box whose shortest edge, 1.", "are the least", NULL}},
     };
     static struct run_program_result result;
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {

@@ -226,13 +226,15 @@ static double assess_deviations(const struct inversion *inversion) {
 }
 
 /// Its seed is the twin's.
-static double find(const struct inverse_method *method, const struct twin *twin,
+/// @param[in] particles  of the system that is sampled; 0: all
+static double find(const struct inverse_method *method, const struct twin *twin, int64_t particles,
                    judgement *assess) {
     void *state = mf_memory_zeroed(1, method->state_size);
     struct inversion_parameters *settings = mf_memory_zeroed(1, method->parameters_size);
     struct inverse_step step;
     for (const struct inverse_table *table = method->tables; table->fields; table++)
         mf_fields_set_defaults(table->fields, (char *)settings + table->offset);
+    settings->particles = particles;
     settings->replicas = 4;
     settings->equilibration = 60;
     settings->precision = 0.008;
@@ -271,12 +273,18 @@ static int clear_first_twin(void **state) {
 
 static void test_imc_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    assert_true(find(&mf_imc, &first_twin, assess_parabolas) > pow(0.2, 2));
+    assert_true(find(&mf_imc, &first_twin, 0, assess_parabolas) > pow(0.2, 2));
+}
+
+static void test_imc_finds_them_in_half_of_the_system(void **state) {
+    (void)state;
+    enum { HALF = CHAINS / 2 * BEADS };
+    assert_true(find(&mf_imc, &first_twin, HALF, assess_parabolas) > pow(0.2, 2));
 }
 
 static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
-    assert_true(find(&mf_ibi, &first_twin, assess_parabolas) > pow(0.2, 2));
+    assert_true(find(&mf_ibi, &first_twin, 0, assess_parabolas) > pow(0.2, 2));
 }
 
 /// The bands of four fits are as wide as they should be. Of 152 twins off over stated is 1.00(3),
@@ -286,11 +294,11 @@ static void test_ibi_finds_pairs_bonds_and_angles_at_once(void **state) {
 static void test_relative_entropy_finds_pairs_bonds_and_angles_at_once(void **state) {
     (void)state;
     const uint64_t fits = length_is_long() ? 4 : 2;
-    double squares = find(&mf_relative_entropy, &first_twin, assess_deviations);
+    double squares = find(&mf_relative_entropy, &first_twin, 0, assess_deviations);
     for (uint64_t fit = 1; fit < fits; fit++) {
         static struct twin twin;
         make_twin(&twin, TWIN_SEED + fit);
-        squares += find(&mf_relative_entropy, &twin, assess_deviations);
+        squares += find(&mf_relative_entropy, &twin, 0, assess_deviations);
         clear_twin(&twin);
     }
     squares /= (double)fits;
@@ -420,6 +428,7 @@ static void test_relative_entropy_of_a_parabola_keeps_the_moments(void **state) 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_imc_finds_pairs_bonds_and_angles_at_once),
+        cmocka_unit_test(test_imc_finds_them_in_half_of_the_system),
         LENGTH_ONLY_LONG(cmocka_unit_test(test_ibi_finds_pairs_bonds_and_angles_at_once)),
         cmocka_unit_test(test_relative_entropy_finds_pairs_bonds_and_angles_at_once),
         cmocka_unit_test(test_relative_entropy_of_a_parabola_keeps_the_moments),

@@ -111,24 +111,8 @@ static void test_composition_scaled_leaves_each_type_a_pair(void **state) {
     // Two of it would have a pair, of whose potential nothing is known.
     const struct composition larger = mf_composition_scaled(&single, 4000);
     assert_int_equal(larger.count[0], 1);
-    assert_true(mf_composition_distortion(&single, &larger) < 2e-3);
-    assert_true(mf_composition_min_particles(&single, 4000, 0.05) == 4000);
     assert_false(mf_composition_has_pairs(&single, 0));
     assert_true(mf_composition_has_pairs(&single, 1) && mf_composition_has_pairs(&rare, 0));
-}
-
-static void test_composition_distortion_is_of_the_share_that_changes_most(void **state) {
-    (void)state;
-    const struct composition rare = {.types = 2, .count = {990, 10}};
-    const struct composition small = mf_composition_scaled(&rare, 100);
-    assert_int_equal(small.count[1], 2);
-    // 2 of 101 instead of 1 of 100.
-    assert_close(mf_composition_distortion(&rare, &small), 200.0 / 101 - 1, 1e-12);
-    assert_close(mf_composition_distortion(&rare, &rare), 0, 0);
-    // 2 of 167 are 1.198 of 1 in 100.
-    assert_int_equal(mf_composition_min_particles(&rare, 100, 0.2), 167);
-    assert_int_equal(mf_composition_min_particles(&rare, 180, 0.2), 180);
-    assert_int_equal(mf_composition_min_particles(&rare, 100, 0), 200);
 }
 
 static void test_composition_particles_are_those_of_all_types(void **state) {
@@ -147,7 +131,6 @@ int main(void) {
         cmocka_unit_test(test_composition_finds_pairs_by_name_in_either_order),
         cmocka_unit_test(test_composition_scaled_keeps_the_shares),
         cmocka_unit_test(test_composition_scaled_leaves_each_type_a_pair),
-        cmocka_unit_test(test_composition_distortion_is_of_the_share_that_changes_most),
         cmocka_unit_test(test_composition_particles_are_those_of_all_types),
         cmocka_unit_test(test_composition_has_one_pair_type_when_it_is_one_component),
         cmocka_unit_test(test_composition_is_name_refuses_what_no_file_could_be_called),
