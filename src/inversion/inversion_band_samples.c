@@ -176,18 +176,31 @@ done:
     return status;
 }
 
+/// Whether what so many independent samples scatter by is not known well enough for a number of
+/// which they leave as much open as matters beside all else. What each replica has seen but once or
+/// twice may still be where it began.
+static bool is_seen_too_seldom(const struct inversion_state *state, double samples,
+                               double independent) {
+    static const double each = 3, matters = 0.5;
+    return samples > matters * state->open.rest &&
+           independent < each * (double)state->replicas.count;
+}
+
 bool mf_inversion_band_is_noisy(const struct inversion_state *state) {
     static const double enough = 1.5; // the noise of what is found is a fourth of it
-    return state->open.samples > enough * state->open.rest;
+    const double samples = state->open.samples;
+    return samples > enough * state->open.rest ||
+           is_seen_too_seldom(state, samples, state->open.independent);
 }
 
 struct inverse_doubling mf_inversion_band_noise(const struct inversion_state *state) {
     const double now = state->replicas.counts.count;
     if (!(state->open.rest > 0))
         return (struct inverse_doubling){.wanted = 1, .unit = ""};
-    const double variance = find_scatter(state, state->open.weight).found;
-    return (struct inverse_doubling){.noise = sqrt(variance * now / (now + state->pool.samples)) /
-                                              state->open.rest,
-                                     .wanted = 1,
-                                     .unit = ""};
+    const struct scatter scatter = find_scatter(state, state->open.weight);
+    const double noise = sqrt(scatter.found * now / (now + state->pool.samples));
+    const double ratio = noise / state->open.rest;
+    const bool seldom = is_seen_too_seldom(state, noise, now / fmax(1, scatter.slowness));
+    return (struct inverse_doubling){
+        .noise = ratio, .wanted = seldom ? fmin(1, 0.7 * ratio) : 1, .unit = ""};
 }

@@ -27,18 +27,23 @@ enum { DISORDER_EQUILIBRATION = 2 };
 enum { MAX_TIMES = 600, MIN_TIMES = 16 };
 
 /// Independent samples after which replicas that go on with another potential have forgotten the
-/// one before: its effect falls as exp(−2 t/memory), to 3e-4.
+/// one before: its effect falls as exp(−2 t/memory), to 3e-4; and after which a twentieth of a step
+/// is left, with which a fit still ends.
 enum { FORGETTING = 4 };
+static const double least_forgetting = 1.5;
 
 /// The equilibration of replicas: that of the parameters, so many times, if they begin from
-/// disorder or their memory is not known; less if they forget sooner.
+/// disorder or their memory is not known; less if they forget sooner, and more if they remember
+/// longer.
 static int64_t equilibration_of(const struct inversion_state *state, int64_t stretch,
                                 bool scatter) {
     const int64_t most = state->parameters->equilibration * stretch;
     const double memory = state->work.memory;
     if (scatter)
         return most * DISORDER_EQUILIBRATION;
-    return memory > 0 ? (int64_t)fmin((double)most, ceil(FORGETTING * memory)) : most;
+    return memory > 0 ? (int64_t)ceil(fmax(least_forgetting * memory,
+                                           fmin((double)most, FORGETTING * memory)))
+                      : most;
 }
 
 /// The sweeps and least samples of an iteration, with so many times the equilibration and the

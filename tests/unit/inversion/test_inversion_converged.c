@@ -85,10 +85,12 @@ static void test_fit_whose_samples_hide_what_is_open_takes_longer_ones(void **st
     struct inversion *inversion = make_end(&end, 0);
     end.state.open.rest = 1;
     end.state.open.samples = 1.4;
+    end.state.open.independent = 100;
     assert_true(mf_inversion_has_converged(inversion, true));
     inversion = make_end(&end, 0);
     end.state.open.rest = 1;
     end.state.open.samples = 1.6;
+    end.state.open.independent = 100;
     end.state.work.sweeps = 8000;
     assert_false(mf_inversion_has_converged(inversion, true));
     assert_int_equal(inversion->course.progress.refine_sweeps, 1000);
@@ -99,8 +101,29 @@ static void test_fit_whose_samples_hide_what_is_open_takes_longer_ones(void **st
     inversion = make_end(&end, 0);
     end.state.open.rest = 1;
     end.state.open.samples = 1.6;
+    end.state.open.independent = 100;
     inversion->parameters.iterations = 1;
     assert_true(mf_inversion_has_converged(inversion, true));
+}
+
+/// Samples of which each replica has seen what is open but once or twice are longer, too, where they
+/// leave as much open as matters.
+static void test_fit_ends_only_when_its_replicas_have_seen_what_is_open(void **state) {
+    static const struct {
+        double samples, seen; // by each replica
+        bool ends;
+    } cases[] = {{0.7, 2, false}, {0.7, 4, true}, {0.3, 1, true}};
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct end end;
+        struct inversion *inversion = make_end(&end, 0);
+        end.state.open.rest = 1;
+        end.state.open.samples = cases[k].samples;
+        end.state.open.independent = cases[k].seen * (double)end.state.replicas.count;
+        end.state.work.sweeps = 8000;
+        assert_true(mf_inversion_has_converged(inversion, true) == cases[k].ends);
+        assert_true((inversion->course.progress.refine_sweeps > 0) == !cases[k].ends);
+    }
 }
 
 /// A way that is over once may be so by chance; what goes on goes on in one direction.
@@ -386,6 +409,7 @@ int main(void) {
         cmocka_unit_test(test_fit_of_pairs_ends_when_it_agrees_once),
         cmocka_unit_test(test_fit_goes_on_while_its_drifts_keep_their_direction),
         cmocka_unit_test(test_fit_whose_samples_hide_what_is_open_takes_longer_ones),
+        cmocka_unit_test(test_fit_ends_only_when_its_replicas_have_seen_what_is_open),
         cmocka_unit_test(test_fit_with_groups_ends_when_the_ways_of_three_iterations_cancel),
         cmocka_unit_test(test_fit_with_groups_ends_though_its_misfit_swings),
         cmocka_unit_test(test_pressure_of_each_state_must_settle),
