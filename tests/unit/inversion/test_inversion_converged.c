@@ -106,8 +106,8 @@ static void test_fit_whose_samples_hide_what_is_open_takes_longer_ones(void **st
     assert_true(mf_inversion_has_converged(inversion, true));
 }
 
-/// Samples of which each replica has seen what is open but once or twice are longer, too, where they
-/// leave as much open as matters.
+/// Samples of which each replica has seen what is open but once or twice are longer, too, where
+/// they leave as much open as matters.
 static void test_fit_ends_only_when_its_replicas_have_seen_what_is_open(void **state) {
     static const struct {
         double samples, seen; // by each replica
