@@ -67,6 +67,8 @@ enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan
                               .structure = structure,
                               .structure_file = structure_file,
                               .time.columns = 1,
+                              .earliest = NAN,
+                              .latest = NAN,
                               .slots = (size_t)(FRAMES_A_THREAD * plan->threads)};
     frames->slots = frames->slots < MIN_SLOTS ? MIN_SLOTS : frames->slots;
     NEW_ARRAY(frames->source, plan->files);
@@ -239,8 +241,11 @@ static enum status assess_time(struct frames *frames, const struct trajectory_fr
     TRY(check_time(frame));
     if (isnan(time))
         return check_known(frames, frame);
+    frames->earliest = fmin(frames->earliest, time);
+    frames->latest = fmax(frames->latest, time);
     *use = !(time < plan->begin - time_tolerance(time));
-    frames->ended = frames->ended || time > plan->end + time_tolerance(time);
+    frames->goes_on = frames->goes_on || time > plan->end + time_tolerance(time);
+    frames->ended = frames->ended || frames->goes_on;
     if (frames->ended || !*use) {
         *use = false;
         return STATUS_OK;

@@ -229,6 +229,18 @@ static enum status shorten_range(struct run *run, double least) {
     return read_again(run, run->frames.plan.skip);
 }
 
+/// What --begin and --end leave nothing of.
+static enum status fail_without_frames(const struct frames *frames) {
+    const char *const file = frames->plan.file[0];
+    if (isnan(frames->earliest))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: no frame is left to be measured", file);
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: no frame is left to be measured: there are times from %.7g to "
+                          "%.7g ps%s",
+                          file, frames->earliest, frames->latest,
+                          frames->goes_on ? " and later" : "");
+}
+
 static enum status read_frames(struct run *run) {
     size_t count;
     for (;;) {
@@ -248,10 +260,7 @@ static enum status read_frames(struct run *run) {
         TRY(add_beads(run, count));
         report(run);
     }
-    if (run->frames.used > 0)
-        return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT, "%s: no frame is left to be measured",
-                          run->request->frames.file[0]);
+    return run->frames.used > 0 ? STATUS_OK : fail_without_frames(&run->frames);
 }
 
 /// "pairs A-B at 0.3 to 0.35 nm", "the volume".

@@ -145,6 +145,17 @@ static void test_measure_has_motion_of_the_frames_that_are_used(void **state) {
     assert_null(strstr(result.err, "--every"));
 }
 
+static void test_measure_names_the_times_that_a_file_has(void **state) {
+    (void)state;
+    RUN_PROGRAM(&result, "measure", xtc, "-s", gro, "--begin", "1e6", "-o", "late");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "water.xtc: no frame is left to be measured: there are times from "
+                                "0 to 0.08 ps\n");
+    RUN_PROGRAM(&result, "measure", xtc, "-s", gro, "--begin", "0.01", "--end", "0.015", "-o", "x");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "there are times from 0 to 0.02 ps and later\n");
+}
+
 /// water.xtc, and where its frames begin and end.
 static unsigned char bytes[200000];
 static size_t begin[8];
@@ -439,6 +450,7 @@ int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, enter, small_inputs_leave)
     const struct CMUnitTest tests[] = {
         TEST(test_measure_counts_the_pairs_that_there_are),
+        TEST(test_measure_names_the_times_that_a_file_has),
         TEST(test_measure_writes_the_same_bytes_when_threads_differ),
         TEST(test_measure_keeps_frames_whose_late_times_are_rounded),
         TEST(test_measure_has_motion_of_the_frames_that_are_used),
