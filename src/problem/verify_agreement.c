@@ -156,7 +156,7 @@ static void find_stretch(const struct comparison *of, const struct verify_sectio
             find_probable(&known, chance * STRETCH / (2.0 * (double)section->count));
         const double misfit = sums.bins > 0 ? sums.square / sums.bins : 0;
         if (misfit * agreement->stretch.probable > agreement->stretch.misfit * probable)
-            agreement->stretch = (struct verify_stretch){first, misfit, probable};
+            agreement->stretch = (struct verify_stretch){first, last - first, misfit, probable};
     }
 }
 
@@ -176,7 +176,8 @@ static struct verify_agreement assess(const struct targets *targets,
         .distance =
             mf_targets_distance(&part, of.value + section->first, of.error + section->first),
         .misfit = sums.bins > 0 ? (sums.square - sums.along * factor) / sums.bins : 0,
-        .probable = find_probable(&section->known, chance)};
+        .probable = find_probable(&section->known, chance),
+        .part = {0, 1, section->first, section->count}};
     if (section->kind == TARGET_RDF)
         find_stretch(&of, section, factor, chance, &agreement);
     return agreement;

@@ -38,9 +38,9 @@ struct verify_sections {
 
 /// A few values beside each other.
 struct verify_stretch {
-    size_t first;    ///< of the target's values
-    double misfit;   ///< χ² by bin
-    double probable; ///< what noise alone exceeds in one of a thousand over all stretches
+    size_t first, count; ///< of the target's values
+    double misfit;       ///< χ² by bin
+    double probable;     ///< what noise alone exceeds in one of a thousand over all stretches
 };
 
 /// Of the section or part of a kind of targets that is least probable.

@@ -3,6 +3,7 @@
 
 #include "base/number_text.h"
 #include "defaults/fit_engine.h"
+#include "report/fit_farthest.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -79,93 +80,6 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const struct targe
     return false;
 }
 
-/// Targets that are fitted, and those that are only compared with what was fitted to them.
-enum judged { FITTED, COMPARED };
-
-/// What of a fit's targets is met least. Where errors are so badly known that noise may reach ten
-/// of them, nothing is.
-struct farthest {
-    enum judged judged;
-    const struct fit_file *state;
-    int kind;
-    const struct verify_agreement *agreement; ///< NULL: the errors of none are known
-};
-
-static struct farthest find_farthest(const struct fit_file *fit,
-                                     const struct verification *verification, enum judged judged) {
-    static const double nothing = 100; // χ² by value
-    struct farthest farthest = {0};
-    for (size_t s = 0; s <= fit->others; s++)
-        for (int kind = 0; kind < TARGETS; kind++) {
-            const struct verify_agreement *own = judged == FITTED ? &verification[s].agreement[kind]
-                                                                  : &verification[s].compared[kind];
-            const struct verify_agreement *most = farthest.agreement;
-            if (own->probable > 0 && own->probable < nothing && own->distance.noise > 0 &&
-                (most == NULL || verify_agreement_off(own) > verify_agreement_off(most)))
-                farthest = (struct farthest){judged, s == 0 ? fit : &fit->other[s - 1], kind, own};
-        }
-    return farthest;
-}
-
-/// " from 0.1 to 0.2 ps", " at 0.1 ps".
-enum { RANGE_SIZE = 64 };
-static void describe_range(const char *before, double first, double last, const struct units *units,
-                           const char *quantity, char text[RANGE_SIZE]) {
-    const double factor = mf_units_factor(units, quantity);
-    char unit[UNITS_NAME_SIZE];
-    mf_units_suffix(units, quantity, unit);
-    if (first == last)
-        snprintf(text, RANGE_SIZE, "%.12s at %.3g%.12s", before, factor * first, unit);
-    else
-        snprintf(text, RANGE_SIZE, "%.12s from %.3g to %.3g%.12s", before, factor * first,
-                 factor * last, unit);
-}
-
-/// Two digits of each of two numbers, or as many as tell them apart.
-static void print_apart(const double number[2], char text[2][NUMBER_TEXT_SIZE]) {
-    static const int most = 6;
-    for (int digits = 2; digits <= most; digits++) {
-        for (int k = 0; k < 2; k++)
-            snprintf(text[k], NUMBER_TEXT_SIZE, "%.*g", digits, number[k]);
-        if (strcmp(text[0], text[1]) != 0)
-            return;
-    }
-}
-
-/// "etd from 0.1 to 0.2 ps for r_0 from 0.6 to 0.7 nm by 5.1 times its statistical error (by
-/// chance up to 3.9)". What is only compared is off by the noise of the fitted targets, too.
-enum { FARTHEST_SIZE = 240 };
-static void describe_farthest(const struct farthest *farthest, char text[FARTHEST_SIZE]) {
-    const struct targets *targets = &farthest->state->problem.compared;
-    const struct verify_agreement *own = farthest->agreement;
-    const struct verify_part *part = &own->part;
-    const struct units *units = &farthest->state->scene.units;
-    const struct etd_grid *grid = &targets->etd;
-    char times[RANGE_SIZE] = "", lengths[RANGE_SIZE] = "";
-    if (farthest->kind == TARGET_VACF || farthest->kind == TARGET_MSD)
-        describe_range("", targets->motion_interval * (double)part->column,
-                       targets->motion_interval * (double)(part->column + part->columns - 1), units,
-                       "tau", times);
-    if (farthest->kind == TARGET_ETD) {
-        const double width = (grid->r_maximum - grid->r_minimum) / (double)grid->bins;
-        describe_range("", targets->etd_interval * (double)part->row,
-                       targets->etd_interval * (double)(part->row + part->rows - 1), units, "tau",
-                       times);
-        describe_range(" for r_0", grid->r_minimum + width * (double)part->column,
-                       grid->r_minimum + width * (double)(part->column + part->columns), units,
-                       "lambda", lengths);
-    }
-    const bool whole = own->misfit / own->probable >= verify_agreement_off(own);
-    const double off[2] = {sqrt(whole ? own->misfit : own->stretch.misfit),
-                           sqrt(whole ? own->probable : own->stretch.probable)};
-    char number[2][NUMBER_TEXT_SIZE];
-    print_apart(off, number);
-    snprintf(text, FARTHEST_SIZE,
-             "%.24s%s%s by %.12s times its statistical error (by %s up to %.12s)",
-             mf_targets_name(farthest->kind), times, lengths, number[0],
-             farthest->judged == FITTED ? "chance" : "its own statistics", number[1]);
-}
-
 /// The cutoff of ω, which no fit changes: ", 1.5 nm,".
 enum { CUTOFF_SIZE = UNITS_NAME_SIZE + 32 };
 static void describe_cutoff(const struct fit_file *fit, char text[CUTOFF_SIZE]) {
@@ -180,14 +94,15 @@ static void describe_cutoff(const struct fit_file *fit, char text[CUTOFF_SIZE]) 
 
 bool mf_fit_closing_is_missed(const struct fit_file *fit, const struct verification *verification,
                               double noise, char reason[INVERSE_REASON_SIZE]) {
-    char cutoff[CUTOFF_SIZE], off[FARTHEST_SIZE];
+    char cutoff[CUTOFF_SIZE], off[FIT_FARTHEST_SIZE];
     bool finds = false;
     for (int kind = 0; kind < UNKNOWNS; kind++)
         finds = finds || (unknown_is_omega(kind) && fit->problem.unknown[kind].wanted);
-    const struct farthest farthest = find_farthest(fit, verification, FITTED);
+    const struct fit_farthest farthest =
+        mf_fit_farthest_find(fit, verification, FIT_TARGETS_FITTED);
     if (!finds || farthest.agreement == NULL || verify_agreement_holds(farthest.agreement))
         return false;
-    describe_farthest(&farthest, off);
+    mf_fit_farthest_describe(&farthest, off);
     describe_cutoff(fit, cutoff);
     if (mf_targets_error(&fit->problem.targets, verification->distance) < noise)
         snprintf(reason, INVERSE_REASON_SIZE,
@@ -212,30 +127,32 @@ static bool only_compares_some(const struct fit_file *fit) {
 }
 
 /// "; those only compared differ, most …", or "": what "success" does not cover.
-enum { COMPARED_SIZE = FARTHEST_SIZE + 64 };
+enum { COMPARED_SIZE = FIT_FARTHEST_SIZE + 64 };
 static void describe_compared(const struct fit_file *fit, const struct verification *verification,
                               char text[COMPARED_SIZE]) {
-    const struct farthest farthest = find_farthest(fit, verification, COMPARED);
-    char off[FARTHEST_SIZE];
+    const struct fit_farthest farthest =
+        mf_fit_farthest_find(fit, verification, FIT_TARGETS_COMPARED);
+    char off[FIT_FARTHEST_SIZE];
     text[0] = '\0';
     if (farthest.agreement == NULL || verify_agreement_holds(farthest.agreement))
         return;
-    describe_farthest(&farthest, off);
+    mf_fit_farthest_describe(&farthest, off);
     snprintf(text, COMPARED_SIZE, "; those only compared differ, most %s", off);
 }
 
 void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result *result,
                             const char *noise, char text[FIT_VERDICT_SIZE]) {
-    const struct farthest farthest = find_farthest(fit, result->verification, FITTED);
+    const struct fit_farthest farthest =
+        mf_fit_farthest_find(fit, result->verification, FIT_TARGETS_FITTED);
     const bool agrees = farthest.agreement && verify_agreement_holds(farthest.agreement);
     const char *word = noise[0]                 ? "undetermined"
                        : agrees                 ? "success"
                        : result->step.converged ? "converged"
                                                 : "finished";
-    char off[FARTHEST_SIZE] = "", others[COMPARED_SIZE];
+    char off[FIT_FARTHEST_SIZE] = "", others[COMPARED_SIZE];
     describe_compared(fit, result->verification, others);
     if (farthest.agreement)
-        describe_farthest(&farthest, off);
+        mf_fit_farthest_describe(&farthest, off);
     if (result->status != STATUS_OK)
         snprintf(text, FIT_VERDICT_SIZE, "the fit did not succeed; the reason follows");
     else if (farthest.agreement == NULL)

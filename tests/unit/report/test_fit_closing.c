@@ -164,6 +164,45 @@ static void test_closing_says_what_success_does_not_cover(void **state) {
     assert_contains(text, "; those only compared differ, most pressure by 2.3 times");
 }
 
+/// The last lines of a fit of which a target is off by twice what chance allows, as a whole or in a
+/// stretch.
+static const char *say_farthest(struct closed *closed, int kind, struct verify_part part,
+                                struct verify_stretch stretch) {
+    static char text[FIT_VERDICT_SIZE];
+    closed->verification.agreement[TARGET_ETD] = (struct verify_agreement){0};
+    closed->verification.agreement[kind] = (struct verify_agreement){
+        {0.1, 0.01, .count = 1}, stretch.count > 0 ? 1 : 64, 16, stretch, part};
+    mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
+    closed->verification.agreement[kind] = (struct verify_agreement){0};
+    return text;
+}
+
+/// Bins of g(r) are counted over all pair types, those of bonds over all groups, and a curve has
+/// points of its own.
+static void test_closing_names_where_a_target_is_farthest_off(void **state) {
+    (void)state;
+    static const double q[] = {1, 2, 3, 4};
+    static const struct verify_part all = {0, 1, 0, 3};
+    static const struct verify_stretch none = {.probable = 0};
+    struct closed *closed = make_closed(3.9);
+    struct inverse_problem *const problem = &closed->fit.problem;
+    int waves = 0;
+    while (strcmp(mf_targets_name(waves), "structure_factor") != 0)
+        waves++;
+    problem->compared.bins = (struct rdf_bins){.low = 0.5, .width = 0.25, .count = 8};
+    assert_contains(say_farthest(closed, TARGET_RDF, all, none),
+                    "most rdf for r from 0.5 to 1.25 by 8 times");
+    closed->fit.scene.setup.composition =
+        (struct composition){.types = 2, .name = {"A", "W"}, .count = {5, 5}};
+    assert_contains(say_farthest(closed, TARGET_RDF, all, (struct verify_stretch){10, 3, 64, 16}),
+                    "most rdf of A-W for r from 1 to 1.75 by 8 times");
+    problem->compared.target[waves] = (struct target){.count = 4, .x = q};
+    assert_contains(say_farthest(closed, waves, (struct verify_part){0, 1, 1, 2}, none),
+                    "most structure_factor for q from 2 to 3 by 8 times");
+    assert_contains(say_farthest(closed, TARGET_PRESSURE, (struct verify_part){0, 1, 0, 1}, none),
+                    "most pressure by 8 times");
+}
+
 /// Numbers that differ look so.
 static void test_closing_tells_a_misfit_from_its_bound(void **state) {
     (void)state;
@@ -227,6 +266,7 @@ int main(void) {
         cmocka_unit_test(test_closing_says_so_where_a_friction_weight_misses_its_targets),
         cmocka_unit_test(test_closing_calls_success_only_what_agrees_and_is_known),
         cmocka_unit_test(test_closing_says_what_success_does_not_cover),
+        cmocka_unit_test(test_closing_names_where_a_target_is_farthest_off),
         cmocka_unit_test(test_closing_tells_a_misfit_from_its_bound),
         cmocka_unit_test(test_closing_says_what_g_leaves_open_unless_it_is_fitted),
     };
