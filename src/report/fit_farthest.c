@@ -166,8 +166,9 @@ void mf_fit_farthest_describe(const struct fit_farthest *farthest, char text[FIT
     char number[2][NUMBER_TEXT_SIZE], place[PLACE_SIZE];
     print_apart(off, number);
     describe_place(farthest, whole, place);
-    snprintf(text, FIT_FARTHEST_SIZE,
-             "%.24s%s by %.12s times its statistical error (by %s up to %.12s)",
-             mf_targets_name(farthest->kind), place, number[0],
-             farthest->judged == FIT_TARGETS_FITTED ? "chance" : "its own statistics", number[1]);
+    snprintf(
+        text, FIT_FARTHEST_SIZE, "%.24s%s by %.12s times its statistical error (by %s up to %.12s)",
+        mf_targets_name(farthest->kind), place, number[0],
+        farthest->judged == FIT_TARGETS_FITTED ? "chance" : "the noise of target and simulations",
+        number[1]);
 }

@@ -20,7 +20,8 @@ struct fit_farthest mf_fit_farthest_find(const struct fit_file *fit,
                                          enum fit_judged judged);
 
 /// "etd from 0.1 to 0.2 ps for r_0 from 0.6 to 0.7 nm by 5.1 times its statistical error (by
-/// chance up to 3.9)". What is only compared is off by the noise of the fitted targets, too.
+/// chance up to 3.9)". The error is that of the target and of the simulations together; what is
+/// only compared is off by what the noise of the fitted targets makes of the potential, too.
 /// Tested: test_fit_closing.
 enum { FIT_FARTHEST_SIZE = 320 };
 void mf_fit_farthest_describe(const struct fit_farthest *farthest, char text[FIT_FARTHEST_SIZE]);

@@ -155,8 +155,8 @@ static void test_closing_says_what_success_does_not_cover(void **state) {
     mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
     assert_string_equal(text, "success: independent simulations agree with the fitted targets "
                               "within their errors; those only compared differ, most pressure by "
-                              "2.3 times its statistical error (by its own statistics up to "
-                              "2.1)");
+                              "2.3 times its statistical error (by the noise of target and "
+                              "simulations up to 2.1)");
     closed->verification.agreement[TARGET_ETD].misfit = 27;
     mf_fit_closing_verdict(&closed->fit, &closed->result, "", text);
     assert_contains(text, "converged: independent simulations differ from the fitted targets, most "
