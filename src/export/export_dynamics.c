@@ -129,6 +129,15 @@ static void print_number(FILE *stream, const struct export_number *number, doubl
         fprintf(stream, " +- %.2g", factor * number->error);
 }
 
+/// D, as the fit prints it: in the units of the run file, whatever those of the engine are.
+static void print_diffusion(FILE *stream, const struct export_job *job,
+                            const struct export_number *number) {
+    const struct units *units = &job->model->scene.units;
+    char unit[UNITS_NAME_SIZE];
+    print_number(stream, number, mf_units_factor(units, "lambda^2/tau"));
+    fprintf(stream, "%s", mf_units_suffix(units, "lambda^2/tau", unit));
+}
+
 /// How much faster or slower, if the errors show it.
 static void print_change(FILE *stream, const struct export_number *here,
                          const struct export_number *there) {
@@ -146,36 +155,37 @@ static void print_change(FILE *stream, const struct export_number *here,
 /// higher the MSD's slope is, as that of the times of two short simulations may be another one.
 static void print_measured(const struct export_job *job, const char *prefix, FILE *stream) {
     const struct export_projection *p = &job->projection;
-    const struct export_units *units = &job->units;
+    const struct units *units = &job->model->scene.units;
     const struct export_number *own = &p->result.diffusion, *there = &p->projected.diffusion;
     const struct export_number *known = &job->model->diffusion;
-    const double diffusion = units->length * units->length / units->time;
+    const double diffusion = mf_units_factor(units, "lambda^2/tau");
+    const double time = mf_units_factor(units, "tau");
+    char name[UNITS_NAME_SIZE];
     const bool both = isfinite(own->value), has_own = isfinite(known->value);
+    mf_units_name(units, "tau", name);
     fprintf(stream, "%sD          ", prefix);
     if (both || has_own) {
-        print_number(stream, has_own ? known : own, diffusion);
-        fprintf(stream, " %s^2/%s of the result, ", units->length_name, units->time_name);
+        print_diffusion(stream, job, has_own ? known : own);
+        fprintf(stream, " of the result, ");
     }
     if (!both || !has_own) {
-        print_number(stream, there, diffusion);
-        fprintf(stream, " %s^2/%s ", units->length_name, units->time_name);
+        print_diffusion(stream, job, there);
+        fprintf(stream, " ");
     }
     fprintf(stream, "%s", job->runs == EXPORT_BATH ? "in that bath" : "by that friction");
     if (both)
         print_change(stream, own, there);
-    const double window = units->time * p->interval * (EXPORT_TIMES - 1);
-    fprintf(stream, " (by slopes of the MSD from %.3g to %.3g %s", window / 2, window,
-            units->time_name);
+    const double window = time * p->interval * (EXPORT_TIMES - 1);
+    fprintf(stream, " (by slopes of the MSD from %.3g to %.3g %s", window / 2, window, name);
     if (both)
         fprintf(stream, ", %.3g and there %.3g", diffusion * own->value, diffusion * there->value);
     fprintf(stream, ", simulated by mesofit for %.3g %s%s)\n",
-            units->time * (double)p->steps * job->model->setup.time_step, units->time_name,
-            both ? " each" : "");
+            time * (double)p->steps * job->model->setup.time_step, name, both ? " each" : "");
     if (isfinite(p->rms))
         fprintf(stream,
                 "%sE(t, r_0)  to t = %.4g %s: rms of the difference %.2g; statistical noise alone "
                 "gives %.2g\n",
-                prefix, window, units->time_name, p->rms, p->noise);
+                prefix, window, name, p->rms, p->noise);
 }
 
 const char *mf_export_dynamics_kept(const struct export_job *job) {
@@ -218,8 +228,6 @@ static void print_instead(const struct export_job *job, const char *prefix, FILE
 }
 
 void mf_export_dynamics_print(const struct export_job *job, const char *prefix, FILE *stream) {
-    const struct export_units *units = &job->units;
-    const double diffusion = units->length * units->length / units->time;
     fprintf(stream, "%sWhat of the dynamics goes to %s:\n", prefix, job->engine->title);
     fprintf(stream, "%sstructure  phi as tables: %s\n", prefix,
             job->model->partial ? "alone, without what else the engine of the fit had"
@@ -233,8 +241,8 @@ void mf_export_dynamics_print(const struct export_job *job, const char *prefix, 
                 job->unmeasured);
     if (!job->measured && !job->model->thermostat && isfinite(job->model->diffusion.value)) {
         fprintf(stream, "%sD          ", prefix);
-        print_number(stream, &job->model->diffusion, diffusion);
-        fprintf(stream, " %s^2/%s of the result\n", units->length_name, units->time_name);
+        print_diffusion(stream, job, &job->model->diffusion);
+        fprintf(stream, " of the result\n");
     }
     if (!job->measured && !job->unmeasured[0] && !job->model->thermostat &&
         job->runs == EXPORT_BATH)
@@ -263,20 +271,19 @@ void mf_export_dynamics_tell(const struct export_job *job, struct progress *prog
 
 // A projection ------------------------------------------------------------------------------------
 
-/// What both simulations found, in the units of the engine.
+/// What both simulations found, in the units of the engine but for D.
 static void print_cost(const struct export_job *job, FILE *stream) {
     const struct export_projection *p = &job->projection;
     const struct export_units *units = &job->units;
-    const double diffusion = units->length * units->length / units->time;
     const struct export_measured *const both[] = {&p->result, &p->projected};
     static const char *const names[] = {"omega of the result", "what stands for it "};
-    for (int k = 0; k < 2; k++)
-        fprintf(stream,
-                "    %s: temperature %.6g +- %.2g %s, slope of the MSD %.4g +- %.2g %s^2/%s\n",
-                names[k], units->temperature * both[k]->temperature.value,
-                units->temperature * both[k]->temperature.error, units->temperature_name,
-                diffusion * both[k]->diffusion.value, diffusion * both[k]->diffusion.error,
-                units->length_name, units->time_name);
+    for (int k = 0; k < 2; k++) {
+        fprintf(stream, "    %s: temperature %.6g +- %.2g %s, slope of the MSD ", names[k],
+                units->temperature * both[k]->temperature.value,
+                units->temperature * both[k]->temperature.error, units->temperature_name);
+        print_diffusion(stream, job, &both[k]->diffusion);
+        fprintf(stream, "\n");
+    }
     fprintf(stream,
             "    E(t, r_0) to t = %.4g %s, r_0 < %.4g %s: rms of the difference %.2g; statistical "
             "noise alone gives %.2g\n",

@@ -25,13 +25,14 @@ static double find_growth(const struct motion *motion, const struct motion_summa
 static void print_diffusion(struct progress *progress, const struct measure_result *result) {
     const struct measured_motion *const motion = &result->measured->motion;
     const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
-    const double cm2 = mf_units_diffusion_cm2_per_s(&result->units) * 1e5;
-    char diffusion[NUMBER_TEXT_SIZE];
-    mf_number_text(cm2 * s.msd, cm2 * s.msd_error, diffusion);
-    mf_progress_print(progress,
-                      "D = %s 1e-5 cm^2/s by the MSD from %.4g to %.4g ps, for this box: a larger "
-                      "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
-                      diffusion, s.fit_begin, s.fit_end);
+    const double time = mf_units_factor(&result->units, "tau");
+    char diffusion[UNITS_MEASURED_SIZE], unit[UNITS_NAME_SIZE];
+    mf_progress_print(
+        progress,
+        "D = %s by the MSD from %.4g to %.4g %s, for this box: a larger "
+        "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
+        mf_units_measured(&result->units, "lambda^2/tau", s.msd, s.msd_error, diffusion),
+        time * s.fit_begin, time * s.fit_end, mf_units_name(&result->units, "tau", unit));
     static const double ballistic = 1.3;
     const double growth = find_growth(&motion->motion, &s);
     if (growth > ballistic)
@@ -57,9 +58,10 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
     else if (motion->has_vacf && mf_motion_is_coarse(&s))
         mf_progress_print(
             progress,
-            "mesofit: warning: frames are too far apart for D by the VACF, %.3g 1e-5 "
-            "cm^2/s: velocities lose %.0f %% of their correlation from one to the next",
-            cm2 * s.green_kubo, 100 * s.vacf_drop);
+            "mesofit: warning: frames are too far apart for D by the VACF, %.3g%s: velocities lose "
+            "%.0f %% of their correlation from one to the next",
+            mf_units_factor(&result->units, "lambda^2/tau") * s.green_kubo,
+            mf_units_suffix(&result->units, "lambda^2/tau", unit), 100 * s.vacf_drop);
 }
 
 static void print_motion(struct progress *progress, const struct measure_result *result) {

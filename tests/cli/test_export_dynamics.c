@@ -162,6 +162,23 @@ static void test_diffusion_of_the_bath_is_that_of_ornstein(void **state) {
     free(said);
 }
 
+/// D has one unit in the outputs of a scene, whatever the units of an engine are.
+static void test_diffusion_has_the_unit_of_the_scene(void **state) {
+    static const char fluid[] =
+        "{\"units\": \"nm-ps\", \"seed\": 5, \"box\": [3, 3, 3], \"temperature\": 300,\n"
+        "\"particles\": {\"count\": 81, \"mass\": 18}, \"time_step\": 0.02,\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 50, \"cutoff\": 1},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 20, \"cutoff\": 1},\n"
+        "\"measure\": {\"equilibration\": 100, \"samples\": 200, \"every\": 10},\n"
+        "\"motion\": {\"lags\": 50, \"every\": 5}}\n";
+    char line[512];
+    simulate(*state, fluid, NULL);
+    find_line(export_to("lammps", NULL), "D ", line);
+    const double diffusion = results_number("out/summary.json", "motion.diffusion_msd");
+    assert_true(diffusion > 0 && fabs(number_after(line, "D ") / diffusion - 1) < 1e-3);
+    assert_contains(line, " nm^2/ps of the result");
+}
+
 /// A LAMMPS that lists some styles.
 static void write_lammps(struct temporary_folder *folder, const char *styles) {
     char path[4096];
@@ -206,6 +223,7 @@ int main(void) {
         TEST(test_friction_that_an_engine_has_goes_along),
         TEST(test_step_is_shortened_by_what_is_no_chance),
         TEST(test_diffusion_of_the_bath_is_that_of_ornstein),
+        TEST(test_diffusion_has_the_unit_of_the_scene),
         TEST(test_what_the_lammps_here_lacks_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -139,7 +139,10 @@ static void test_measure_has_motion_of_the_frames_that_are_used(void **state) {
     assert_close(results_number("end/summary.json", "frames"), 20, 0);
     assert_close(results_number("end/summary.json", "window"), 2, 1e-9);
     assert_true(temporary_folder_exists("end/msd.tsv"));
+    MEASURE("long.xyz", "--units", "angstrom-fs", "-o", "angstrom");
+    assert_contains(result.err, " angstrom^2/fs by the MSD from 1e+04 to 2e+04 fs, for this box");
     MEASURE("long.xyz", "--every", "2.5", "-o", "five"); // of 1 ps
+    assert_contains(result.err, " nm^2/ps by the MSD from ");
     assert_contains(result.err, "--every 2.5: frames 5 ps apart are used");
     MEASURE("long.xyz", "--every", "2", "-o", "two");
     assert_null(strstr(result.err, "--every"));
