@@ -226,6 +226,29 @@ static const char *const active_files[] = {"polarity.tsv",
                                            "snapshots/step_000000200.json",
                                            NULL};
 
+/// As docs/theory.md has it: of a coarse step of `aboba` the velocities at its end are hotter than
+/// those in its middle, of which the summary tells.
+static void test_velocities_are_those_of_the_end_of_a_step(void **state) {
+    static const double kelvin = 120.272;
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json",
+                       "{\"box\": [6, 6, 6], \"particles\": {\"count\": 648}, \"time_step\": 0.08, "
+                       "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}, "
+                       "\"dissipative\": {\"law\": \"power\", \"sigma\": 3}, "
+                       "\"measure\": {\"equilibration\": 200, \"samples\": 40, \"every\": 10}, "
+                       "\"snapshots\": {\"every\": 10, \"formats\": [\"extxyz\"]}}",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 0);
+    RUN_PROGRAM(&result, "measure", "out/snapshots/trajectory.extxyz", "--file-units", "lj", "-o",
+                "target", "--quiet");
+    run_program_assert_code(&result, 0);
+    const double middle = results_number("out/summary.json", "temperature");
+    const double end = results_number("target/summary.json", "temperature") / kelvin;
+    print_message("in the middle %g, at the end %g\n", middle, end);
+    assert_true(middle > 1.02 && end > middle + 0.03);
+}
+
 /// Both forms of the last configuration begin the same scene.
 static void test_scene_begins_with_a_snapshot(void **state) {
     static struct run_program_result result;
@@ -373,6 +396,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_new_run_removes_the_snapshots_of_an_earlier_one,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_measure_knows_the_units_of_snapshots,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_velocities_are_those_of_the_end_of_a_step,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_scene_begins_with_a_snapshot,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
