@@ -42,10 +42,15 @@ bool mf_inversion_ends_with_mean(const struct inversion *inversion) {
 /// Bins of a stretch of a curve; those beside it share half of them.
 enum { STRETCH = 6 };
 
-/// Whether bins of a section meet their targets but for noise with such a chance, and for that of
-/// the samples that the potential follows.
-static bool stretch_agrees(const struct inversion_state *state, const double *excess, double factor,
-                           double chance, const struct inversion_section *stretch) {
+/// Σ x²/σ² of a stretch, and what noise alone exceeds, also that of the samples that the potential
+/// follows, with such a chance over all of them.
+struct misfit {
+    double sum, most;
+};
+
+static struct misfit find_misfit(const struct inversion_state *state, const double *excess,
+                                 double factor, double chance,
+                                 const struct inversion_section *stretch) {
     const struct potential_grid *grid = &state->grid;
     double sum = 0, seen = 0, followed = 0;
     for (size_t a = stretch->known; a < stretch->known + stretch->known_count; a++) {
@@ -56,11 +61,14 @@ static bool stretch_agrees(const struct inversion_state *state, const double *ex
         sum += pow(excess[a] - factor * wanted, 2) / state->variance[a];
         followed += 1 - mf_inversion_target_variance(state, a) / state->variance[a];
     }
-    return seen == 0 || sum <= (seen + followed) * mf_inversion_probable(state, stretch, chance);
+    return seen == 0 ? (struct misfit){0, 1}
+                     : (struct misfit){sum, (seen + followed) *
+                                                mf_inversion_probable(state, stretch, chance)};
 }
 
-/// The first bin of a stretch of g(r) that does not; or SIZE_MAX.
-static size_t find_off(const struct inversion_state *state, const double *excess) {
+/// Keep the stretch of a state that is off by most, if one is by more than those before.
+static void find_farthest(const struct inversion_state *state, const double *excess, size_t number,
+                          struct misfit *worst, struct inversion_stretch *farthest) {
     const struct potential_grid *grid = &state->grid;
     const double chance = mf_inversion_chance * STRETCH / (2.0 * (double)grid->pairs_known);
     for (size_t pair = 0, first = 0; pair < grid->pairs; first += grid->known_of[pair++]) {
@@ -70,24 +78,26 @@ static size_t find_off(const struct inversion_state *state, const double *excess
             struct inversion_section stretch = state->assessment.section[0];
             stretch.known = a;
             stretch.known_count = last - a < STRETCH ? last - a : STRETCH;
-            if (!stretch_agrees(state, excess, factor, chance, &stretch))
-                return a;
+            const struct misfit own = find_misfit(state, excess, factor, chance, &stretch);
+            if (own.sum <= own.most || own.sum * worst->most <= worst->sum * own.most)
+                continue;
+            *worst = own;
+            *farthest =
+                (struct inversion_stretch){number, pair, grid->r[grid->known_point[a]],
+                                           grid->r[grid->known_point[a + stretch.known_count - 1]]};
         }
     }
-    return SIZE_MAX;
 }
 
-bool mf_inversion_find_stretch(const struct inversion *inversion, double *r) {
+bool mf_inversion_find_stretch(const struct inversion *inversion,
+                               struct inversion_stretch *farthest) {
     const bool mean = mf_inversion_ends_with_mean(inversion);
+    struct misfit worst = {0, 1};
     for (size_t s = 0; s < inversion->states; s++) {
         const struct inversion_state *state = &inversion->state[s];
-        const size_t known = find_off(state, mean ? state->pool.excess : state->excess);
-        if (known == SIZE_MAX)
-            continue;
-        *r = state->grid.r[state->grid.known_point[known]];
-        return true;
+        find_farthest(state, mean ? state->pool.excess : state->excess, s, &worst, farthest);
     }
-    return false;
+    return worst.sum > 0;
 }
 
 /// Whether that mean meets the targets of a section.
@@ -136,12 +146,12 @@ static bool present_meets(const struct inversion *inversion) {
 /// these makes it better.
 static bool meets_targets(const struct inversion *inversion) {
     const struct inversion_basis *basis = &inversion->state->basis;
-    double r;
+    struct inversion_stretch off;
     if (basis->count > 0)
         return basis->miss <= mf_inverse_noise_margin;
     return (present_meets(inversion) ||
             (mf_inversion_ends_with_mean(inversion) && mean_meets(inversion->state))) &&
-           !mf_inversion_find_stretch(inversion, &r);
+           !mf_inversion_find_stretch(inversion, &off);
 }
 
 /// Whether a method that takes the most probable step must go all of the way that g hardly sees.
@@ -155,8 +165,7 @@ static bool cancels(double sum, uint32_t count, const struct inversion_band_drif
     return fabs(sum) <= count * settled_drift * last->open;
 }
 
-/// Iterations that must meet the targets before a fit that must settle ends.
-static uint32_t least_met(const struct inversion *inversion) {
+uint32_t mf_inversion_least_met(const struct inversion *inversion) {
     return inversion_grid(inversion)->groups > 0 ? MIN_MET_WITH_GROUPS : 1;
 }
 
@@ -164,7 +173,7 @@ bool mf_inversion_may_end(const struct inversion *inversion) {
     return ((const struct inversion_rule *)inversion->method->own)->memoryless ||
            inversion_grid(inversion)->pairs == 0 || inversion->state->basis.count > 0 ||
            mf_inversion_bulk_is_asked(inversion->state) ||
-           inversion->course.progress.drifts.met + 1 >= least_met(inversion);
+           inversion->course.progress.drifts.met + 1 >= mf_inversion_least_met(inversion);
 }
 
 /// Whether the drifts of the last iterations near the targets, `min` of them or more, cancel but
@@ -247,7 +256,7 @@ bool mf_inversion_has_converged(struct inversion *inversion, bool kept) {
     if (!meets)
         return false;
     drifts->met++;
-    const uint32_t min = least_met(inversion);
+    const uint32_t min = mf_inversion_least_met(inversion);
     const bool settled = drifts->met >= min && has_settled(inversion, min);
     return !unsettled &&
            (!must_settle(inversion) || (settled && !progress->on_its_way && is_known(inversion)));

@@ -153,13 +153,23 @@ bool mf_inversion_may_end(const struct inversion *inversion);
 /// test_inversion_converged.
 bool mf_inversion_has_converged(struct inversion *inversion, bool kept);
 
-/// Find a stretch of a g(r) that is off by more than noise, though all of it may agree: few bins
-/// drown among the others, as those that few pairs reach among those of all shells. Of the excess
-/// of all iterations near the targets, moved to the present potential, or of their mean, if the fit
-/// ends with it. Distributions of groups are not looked at so, since U is made smooth at the end.
-/// Tested: test_inversion_converged.
-/// @param[out] r  centre of its first bin [λ]
-bool mf_inversion_find_stretch(const struct inversion *inversion, double *r);
+/// A few bins of g(r) beside each other.
+struct inversion_stretch {
+    size_t state, pair;
+    double first, last; ///< centres of the first and the last [λ]
+};
+
+/// Find the stretch of a g(r) that is farthest off, by more than noise, though all of it may agree:
+/// few bins drown among the others, as those that few pairs reach among those of all shells. Of the
+/// excess of all iterations near the targets, moved to the present potential, or of their mean, if
+/// the fit ends with it. Distributions of groups are not looked at so, since U is made smooth at
+/// the end. Returns whether there is one; else *farthest is not set. Tested:
+/// test_inversion_converged.
+bool mf_inversion_find_stretch(const struct inversion *inversion,
+                               struct inversion_stretch *farthest);
+
+/// Iterations that must meet the targets before a fit that must settle ends.
+uint32_t mf_inversion_least_met(const struct inversion *inversion);
 
 /// Why a fit that has finished did not converge, in words.
 void mf_inversion_reason_write(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]);

@@ -33,12 +33,70 @@ static void report_groups(const struct inversion *inversion, char reason[INVERSE
              inversion->course.progress.best.own_noise, inversion->parameters.precision);
 }
 
-static void report_stretch(double r, char reason[INVERSE_REASON_SIZE]) {
+/// " of A-W for r from 0.27 to 0.32 nm".
+enum { STRETCH_SIZE = 160 };
+static void describe_stretch(const struct inversion *inversion,
+                             const struct inversion_stretch *stretch, char text[STRETCH_SIZE]) {
+    const struct inverse_problem *problem = inversion->state[stretch->state].problem;
+    const struct composition *composition = &problem->scene.composition;
+    char pair[COMPOSITION_PAIR_NAME_SIZE] = "";
+    if (composition_is_mixed(composition))
+        mf_composition_pair_name(composition, (int)stretch->pair, pair);
+    snprintf(text, STRETCH_SIZE,
+             "%s%.30s for r from %.3g" STATUS_LENGTH " to %.3g" STATUS_LENGTH "%s%.30s",
+             pair[0] ? " of " : "", pair, stretch->first, stretch->last,
+             inversion->states > 1 ? " in the state " : "",
+             inversion->states > 1 ? problem->name : "");
+}
+
+static void report_stretch(const struct inversion *inversion,
+                           const struct inversion_stretch *stretch,
+                           char reason[INVERSE_REASON_SIZE]) {
+    char place[STRETCH_SIZE];
+    describe_stretch(inversion, stretch, place);
     snprintf(reason, INVERSE_REASON_SIZE,
-             "g(r) agrees as a whole, but not from r = %.3g" STATUS_LENGTH
-             " on: try more \"iterations\" or \"samples\", and see whether the errors of the "
-             "target are right there",
-             r);
+             "g(r) agrees as a whole, but not%s: try more \"iterations\" or \"samples\", and see "
+             "whether the errors of the target are right there",
+             place);
+}
+
+/// Of a fit that meets its targets as exactly as was asked for: what it hardly determines must
+/// settle, too.
+static void report_way(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion_progress *p = &inversion->course.progress;
+    const struct inversion_unequilibrated *unequilibrated = &inversion->assessment.unequilibrated;
+    const struct inversion_band_drift *ramp = &inversion->course.band.drifts.ramp;
+    const struct inversion_band_drift farthest = mf_inversion_band_farthest(inversion);
+    const enum target_kind kind = mf_inversion_bulk_kind(inversion->state);
+    const char *name = mf_targets_name((int)kind), *unit = mf_observable_kind(kind).target->unit;
+    const uint32_t least = mf_inversion_least_met(inversion);
+    char what[INVERSE_REASON_SIZE / 2];
+    if (p->from_disorder) {
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the targets were met, but the last step led away from them and was taken back, "
+                 "so that nothing shows yet that the potential has settled: more \"iterations\" "
+                 "are needed");
+    } else if (unequilibrated->found) {
+        mf_stationary_describe(unequilibrated->quantity, &unequilibrated->is, what, sizeof what);
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the targets are met, but the last samples have not settled: %.100s: more "
+                 "\"iterations\" or a longer \"equilibration\" are needed",
+                 what);
+    } else if (p->drifts.met > 0 && p->drifts.met < least) {
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "the targets are met in %u of the last iterations, and %u must meet them, as each "
+                 "step goes but a part of its way: more \"iterations\" are needed",
+                 (unsigned)p->drifts.met, (unsigned)least);
+    } else
+        snprintf(reason, INVERSE_REASON_SIZE,
+                 "g(r) agrees, but what it hardly determines has not converged: a ramp "
+                 "A (1 - r/cutoff) of the potential still drifts by %.2g" STATUS_ENERGY
+                 " (error %.2g" STATUS_ENERGY "), and "
+                 "the %s by %.2g" STATUS_UNIT " (error %.2g" STATUS_UNIT
+                 ")%s; give \"%s\" as a second target, or more "
+                 "\"iterations\"",
+                 ramp->drift, ramp->open, name, farthest.drift, unit, farthest.open, unit,
+                 p->on_its_way ? ", in one direction for two iterations" : "", name);
 }
 
 /// Why a fit whose g(r) agrees has not converged.
@@ -50,10 +108,8 @@ static void report_what_is_missing(const struct inversion *inversion,
     const struct target_distance *bulk = &p->best.distance[kind];
     const char *name = mf_targets_name((int)kind), *unit = mf_observable_kind(kind).target->unit;
     const struct target_distance *integrals = &p->best.distance[mf_kirkwood_buff_kind()];
-    const struct inversion_band_drift *ramp = &inversion->course.band.drifts.ramp;
-    const struct inversion_band_drift farthest = mf_inversion_band_farthest(inversion);
     const int missed = find_missed(inversion);
-    double r;
+    struct inversion_stretch off;
     if (missed >= 0)
         snprintf(reason, INVERSE_REASON_SIZE,
                  "the error of %s is %.2g, its statistical error %.2g, and chi^2 per bin is %.2g "
@@ -76,23 +132,16 @@ static void report_what_is_missing(const struct inversion *inversion,
                  integrals->rms, integrals->noise);
     else if (inversion_grid(inversion)->groups > 0 && inversion_grid(inversion)->pairs == 0)
         report_groups(inversion, reason);
-    else if (mf_inversion_find_stretch(inversion, &r))
-        report_stretch(r, reason);
-    else if (isnan(ramp->drift))
+    else if (mf_inversion_find_stretch(inversion, &off))
+        report_stretch(inversion, &off, reason);
+    else if (isnan(inversion->course.band.drifts.ramp.drift))
         snprintf(
             reason, INVERSE_REASON_SIZE,
             "g(r) agrees within %.2g, but its covariance matrix is singular, so that the errors of "
             "the potential are not known: more \"samples\" are needed",
             p->best.own_noise);
     else if (p->best.precise)
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "g(r) agrees, but what it hardly determines has not converged: a ramp "
-                 "A (1 - r/cutoff) of the potential still drifts by %.2g" STATUS_ENERGY
-                 " (error %.2g" STATUS_ENERGY "), and "
-                 "the %s by %.2g" STATUS_UNIT " (error %.2g" STATUS_UNIT
-                 "); give \"%s\" as a second target, or more "
-                 "\"iterations\"",
-                 ramp->drift, ramp->open, name, farthest.drift, unit, farthest.open, unit, name);
+        report_way(inversion, reason);
     else
         snprintf(reason, INVERSE_REASON_SIZE,
                  "g(r) agrees within a statistical error of %.2g, but \"precision\" is %.2g: more "
@@ -109,6 +158,23 @@ static void report_gradient(const struct inversion *inversion, char reason[INVER
                  inversion->state->gradient);
     else
         report_what_is_missing(inversion, reason);
+}
+
+/// Of a g(r) that is off, where it is by most, if the last samples are those of the best potential.
+static void report_misfit(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion_progress *p = &inversion->course.progress;
+    const struct target_distance *rdf = &p->best.distance[TARGET_RDF];
+    struct inversion_stretch off;
+    char place[STRETCH_SIZE] = "";
+    const bool known = !p->from_disorder && mf_inversion_find_stretch(inversion, &off);
+    if (known)
+        describe_stretch(inversion, &off, place);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "after %lld iterations the error of g(r) is %.2g (%.2g at first), its statistical "
+             "error %.2g, and chi^2 per bin is %.2g (at most %.2g by noise)%s%s: try more "
+             "\"iterations\"",
+             (long long)inversion->parameters.iterations, rdf->rms, p->first_error, rdf->noise,
+             p->best.worst.misfit, p->best.worst.probable, known ? ", most" : "", place);
 }
 
 static double square_of(const struct inversion_history *history, uint64_t iteration) {
@@ -139,7 +205,6 @@ void mf_inversion_reason_write(const struct inversion *inversion,
         report_gradient(inversion, reason);
         return;
     }
-    const struct inversion_parameters *settings = &inversion->parameters;
     const struct target_distance *rdf = &p->best.distance[TARGET_RDF];
     const bool stuck = p->damping < mf_inversion_min_damping;
     const struct inversion_section *worst = &p->best.worst;
@@ -175,10 +240,5 @@ void mf_inversion_reason_write(const struct inversion *inversion,
                      ? "; with so many pair types try targets with a shorter \"cutoff\""
                      : "");
     else
-        snprintf(reason, INVERSE_REASON_SIZE,
-                 "after %lld iterations the error of g(r) is %.2g (%.2g at first), its statistical "
-                 "error "
-                 "%.2g, and chi^2 per bin is %.2g (at most %.2g by noise)",
-                 (long long)settings->iterations, rdf->rms, p->first_error, rdf->noise,
-                 worst->misfit, worst->probable);
+        report_misfit(inversion, reason);
 }

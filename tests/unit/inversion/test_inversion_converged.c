@@ -377,12 +377,12 @@ static void test_fit_does_not_end_where_a_stretch_of_its_curve_is_off(void **sta
     static struct curve_of_bins curve;
     struct inversion *inversion = make_curve(&curve);
     size_t found[4] = {0};
-    double r;
+    struct inversion_stretch off;
     for (uint32_t draw = 0; draw < DRAWS; draw++)
         for (int errors = 0; errors < 4; errors++) {
             draw_excess(&curve, draw);
             curve.excess[7] += errors > 0 ? 4 + errors : 0;
-            found[errors] += mf_inversion_find_stretch(inversion, &r);
+            found[errors] += mf_inversion_find_stretch(inversion, &off);
         }
     print_message("of %d: %zu without, %zu, %zu, %zu with 5, 6, 7 errors\n", DRAWS, found[0],
                   found[1], found[2], found[3]);
@@ -391,8 +391,13 @@ static void test_fit_does_not_end_where_a_stretch_of_its_curve_is_off(void **sta
     assert_true(found[3] > 0.9 * DRAWS);
     for (size_t k = 0; k < BINS; k++)
         curve.excess[k] = k == 7 ? 7 : 0;
-    assert_true(mf_inversion_find_stretch(inversion, &r));
-    assert_true(r <= 0.07 && r + 0.06 > 0.07);
+    assert_true(mf_inversion_find_stretch(inversion, &off));
+    assert_true(off.first <= 0.07 && off.last >= 0.07);
+    // Of two the one that is farther off.
+    curve.excess[30] = 9;
+    assert_true(mf_inversion_find_stretch(inversion, &off));
+    assert_true(off.first <= 0.3 && off.last >= 0.3);
+    curve.excess[30] = 0;
     assert_false(mf_inversion_has_converged(inversion, true));
     curve.seen[7] = false;
     assert_true(mf_inversion_has_converged(inversion, true));

@@ -112,6 +112,31 @@ static void test_inversion_reason_is_what_has_not_settled(void **state) {
     assert_says(inversion, "after 30 iterations");
 }
 
+/// Where all targets are met, what else must settle is named.
+static void test_inversion_reason_is_what_has_not_settled_though_targets_are_met(void **state) {
+    (void)state;
+    struct fit fit;
+    struct inversion *inversion = make_fit(&fit, 0.004, false);
+    struct inversion_course *course = &inversion->course;
+    course->progress.best.precise = true;
+    course->band.drifts.ramp = (struct inversion_band_drift){.drift = 0.3, .open = 0.1};
+    course->band.drifts.bulk[0] = (struct inversion_band_drift){.drift = 2, .open = 1};
+    assert_says(inversion,
+                "still drifts by 0.3 (error 0.1), and the pressure by 2 (error 1); give");
+    course->progress.on_its_way = true;
+    assert_says(inversion, "by 2 (error 1), in one direction for two iterations; give");
+    course->progress.drifts.met = 2;
+    fit.state.grid.pairs = fit.state.grid.groups = 1;
+    fit.state.grid.known_of = (size_t[]){0};
+    assert_says(inversion, "met in 2 of the last iterations, and 3 must meet them");
+    inversion->assessment.unequilibrated = (struct inversion_unequilibrated){
+        .found = true, .quantity = "R_g^2 of the molecules", .is = {1e-9, 0.3, 16, 2}};
+    assert_says(inversion, "the targets are met, but the last samples have not settled: R_g^2 of "
+                           "the molecules still changes, 4 times as much");
+    course->progress.from_disorder = true;
+    assert_says(inversion, "the last step led away from them and was taken back");
+}
+
 static void test_inversion_reason_is_a_target_that_is_off_as_a_whole(void **state) {
     (void)state;
     struct fit fit;
@@ -163,6 +188,7 @@ int main(void) {
         cmocka_unit_test(test_inversion_reason_of_a_stuck_mixture_advises_a_shorter_cutoff),
         cmocka_unit_test(test_inversion_reason_is_the_precision_when_the_curves_agree),
         cmocka_unit_test(test_inversion_reason_is_what_has_not_settled),
+        cmocka_unit_test(test_inversion_reason_is_what_has_not_settled_though_targets_are_met),
         cmocka_unit_test(test_inversion_reason_of_groups_is_the_one_that_is_off),
         cmocka_unit_test(test_inversion_reason_is_the_pressure_when_only_that_is_off),
     };
