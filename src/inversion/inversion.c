@@ -94,8 +94,8 @@ static void describe_samples(const struct inversion *inversion, const double *ow
     }
 }
 
-static void describe(const struct inversion *inversion, const double *own, bool converged,
-                     struct inverse_step *step) {
+static void describe(const struct inversion *inversion, const double *own, bool kept,
+                     bool converged, struct inverse_step *step) {
     const struct inversion_course *course = &inversion->course;
     const struct inversion_progress *progress = &course->progress;
     const struct targets *targets = &inversion->problem->targets;
@@ -110,6 +110,7 @@ static void describe(const struct inversion *inversion, const double *own, bool 
         .curve_flat = {course->band.flat},
         .without_ramp = course->band.without_ramp,
         .ramp = course->band.ramp,
+        .start = mf_inversion_start_taken(inversion, kept),
         .response = {inversion->state->response.covariance, inversion->state->target.ideal},
         .converged = converged,
         .finished = converged || stuck || progress->lost ||
@@ -141,7 +142,7 @@ static enum status advance(struct inversion *inversion, struct inverse_step *ste
     converged = mf_inversion_has_converged(inversion, *kept);
     if (converged)
         TRY(mf_inversion_take_last_step(inversion));
-    describe(inversion, own, converged, step);
+    describe(inversion, own, *kept, converged, step);
     if (!step->finished)
         TRY(mf_inversion_course_go_on(inversion, *kept));
     course->progress.iteration++;

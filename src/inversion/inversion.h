@@ -165,6 +165,9 @@ enum status mf_inversion_start_weigh(struct inversion *inversion,
 bool mf_inversion_start_has_trial(const struct inversion *inversion, bool kept);
 void mf_inversion_start_try(struct inversion *inversion);
 
+/// Which start the fit has gone on from. @param[in] kept  whether the last potential is
+enum inverse_start mf_inversion_start_taken(const struct inversion *inversion, bool kept);
+
 /// Whether there is another start to be tried: the first was the hypernetted chain's, a moment ago.
 bool mf_inversion_start_has_other(const struct inversion *inversion,
                                   const struct inversion_state *state);

@@ -56,6 +56,7 @@ struct inversion_progress {
     bool gave_up;           ///< the last samples had not settled when they had cost enough
     bool weighs_starts;     ///< the start that the target alone says is tried beside that of forces
     bool trial;             ///< the present potential is that
+    bool tried;             ///< it has been
     bool from_forces;       ///< the start of the best was that of forces
 };
 

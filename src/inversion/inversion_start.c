@@ -181,7 +181,16 @@ bool mf_inversion_start_has_trial(const struct inversion *inversion, bool kept) 
 void mf_inversion_start_try(struct inversion *inversion) {
     struct inversion_course *const course = &inversion->course;
     memcpy(course->phi, course->reference, inversion_grid(inversion)->points * sizeof *course->phi);
-    course->progress.trial = course->progress.from_disorder = true;
+    course->progress.trial = course->progress.tried = course->progress.from_disorder = true;
+}
+
+enum inverse_start mf_inversion_start_taken(const struct inversion *inversion, bool kept) {
+    const struct inversion_progress *const progress = &inversion->course.progress;
+    if (!progress->weighs_starts || mf_inversion_start_has_trial(inversion, kept))
+        return INVERSE_START_ONLY;
+    if (!progress->from_forces)
+        return INVERSE_START_TARGET_NEARER;
+    return progress->tried ? INVERSE_START_FORCES_NEARER : INVERSE_START_FORCES;
 }
 
 /// rms of g* − 1.

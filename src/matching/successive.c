@@ -56,6 +56,7 @@ struct state {
         int stage;      ///< enum unknown_kind
         struct outcome outcome[PARTS];
         struct inverse_ramp ramp;
+        enum inverse_start start;
         struct inverse_parameter parameter[INVERSE_PARAMETERS];
     } progress;
 };
@@ -204,6 +205,7 @@ static void take(struct state *state, enum unknown_kind kind, const struct inver
     if (kind == UNKNOWN_POTENTIAL) {
         copy(state->without_ramp, step->without_ramp, points);
         state->progress.ramp = step->ramp;
+        state->progress.start = step->start;
     } else {
         memcpy(state->progress.parameter, step->parameter, sizeof step->parameter);
     }
@@ -260,6 +262,7 @@ static void describe(struct state *state, int stage, bool finished, struct inver
         .extra = {stage, outcome[0].error, outcome[1].error},
         .without_ramp = state->without_ramp,
         .ramp = progress->ramp,
+        .start = progress->start,
     };
     memcpy(step->parameter, progress->parameter, sizeof step->parameter);
     for (int kind = 0; kind < PARTS; kind++) {

@@ -224,6 +224,14 @@ struct inverse_ramp {
     double bins;         ///< out of so many
 };
 
+/// Which of several starts a fit has gone on from.
+enum inverse_start {
+    INVERSE_START_ONLY,          ///< there was but one, or it is not decided yet
+    INVERSE_START_FORCES,        ///< the forces of the target, which were near at once
+    INVERSE_START_FORCES_NEARER, ///< the same, nearer than what g(r) says
+    INVERSE_START_TARGET_NEARER, ///< what g(r) says
+};
+
 /// What the samples of an inversion forget most slowly.
 struct inverse_slowest {
     char quantity[32];  ///< in words; "": not known
@@ -258,6 +266,7 @@ struct inverse_step {
     const double *without_ramp;
     struct inverse_ramp ramp;
     struct inverse_slowest slowest;
+    enum inverse_start start;
     struct inverse_response response;
     const char *formula; ///< of the curve, as a scene's law "expression" has it; NULL: it is none
     struct inverse_parameter

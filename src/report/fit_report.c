@@ -121,6 +121,17 @@ static void print_numbers(struct progress *to, const struct fit_file *fit,
     }
 }
 
+/// What the fit went on from, if it had several starts.
+static void print_start(struct progress *to, enum inverse_start start) {
+    static const char *const began[] = {
+        [INVERSE_START_FORCES] = "the forces of the target, which were near at once",
+        [INVERSE_START_FORCES_NEARER] = "the forces of the target, nearer than what its g(r) says",
+        [INVERSE_START_TARGET_NEARER] = "what g(r) of the target says, nearer than its forces",
+    };
+    if (began[start])
+        mf_progress_print(to, "begun with %s", began[start]);
+}
+
 /// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
 static void print_changes(struct progress *to, const struct units *units,
                           const struct unknowns *unknowns, const struct fit_result *result) {
@@ -386,6 +397,7 @@ void mf_fit_report_print(struct progress *to, const struct fit_file *fit,
                          const struct unknowns *unknowns, const struct fit_result *result) {
     const struct units *units = &fit->scene.units;
     print_end(to, result);
+    print_start(to, result->step.start);
     print_changes(to, units, unknowns, result);
     if (result->step.formula[0])
         mf_progress_print(to, "formula: %s", result->step.formula);

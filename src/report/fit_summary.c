@@ -270,12 +270,15 @@ static void write_parameters(struct json_writer *writer, const struct fit_file *
     mf_json_end(writer);
 }
 
-/// "start": {"error": 0.11, "potential": {"change": 0.05, "well": -0.45, "well_at": 0.99}, …}, the
-/// first iteration, and what the fit changed by since.
+/// "start": {"from": "forces", "error": 0.11, "potential": {"change": 0.05, "well": -0.45,
+/// "well_at": 0.99}, …}, the first iteration, and what the fit changed by since.
 static void write_start(struct json_writer *writer, const struct unknowns *unknowns,
                         const struct fit_result *result) {
     char name[UNKNOWNS_NAME_SIZE];
     mf_json_begin(writer, "start");
+    if (result->step.start != INVERSE_START_ONLY)
+        mf_json_write_text(writer, "from",
+                           result->step.start == INVERSE_START_TARGET_NEARER ? "g(r)" : "forces");
     write_known(writer, "error", result->first_error);
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);

@@ -288,6 +288,8 @@ static void test_auto_goes_on_from_the_nearer_start(void **state) {
     RUN_PROGRAM(&result, "fit", "target/run.json", "-o", "out", "--force");
     assert_true(history(0, "forces") == 1);
     assert_true(history(0, "rdf_rms") < 0.05);
+    assert_contains(result.err, "begun with the forces of the target, ");
+    results_assert_text("out/summary.json", "start.from", "forces");
     for (int wrong = 0; wrong < 2; wrong++) {
         MEASURE("liquid/snapshots/trajectory.lammpstrj", "--forces", "1.2");
         if (wrong)
@@ -301,6 +303,8 @@ static void test_auto_goes_on_from_the_nearer_start(void **state) {
             continue;
         assert_true(history(0, "rdf_rms") > 2 * history(1, "rdf_rms"));
         assert_true(history(1, "forces") == 0 && history(2, "forces") == 0);
+        assert_contains(result.err, "begun with what g(r) of the target says, nearer than its");
+        results_assert_text("out/summary.json", "start.from", "g(r)");
     }
 }
 
