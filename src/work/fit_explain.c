@@ -74,7 +74,8 @@ static void print_engine(const struct fit_file *fit) {
 }
 
 /// What an inversion looks at, and about how long: an iteration whose samples are as exact as is
-/// asked for. The first ones are shorter.
+/// asked for. Of seven liquids such iterations took 0.6 to 1 times as many sweeps, with a pressure
+/// as a target 2.2 times, and fits had 4 to 17 iterations.
 static enum status print_sampling(const struct fit_file *fit) {
     static const double inefficiency = 2;
     const struct inversion_parameters *p = fit->method_parameters;
@@ -100,9 +101,13 @@ static enum status print_sampling(const struct fit_file *fit) {
     const double sweeps = replicas * (double)p->equilibration + samples * (double)p->every;
     mf_fit_scales_rdf_clear(&rdf);
     print_time(sweeps * mf_explain_sweep(setup, count, range) / fit->problem.threads, time);
-    printf("An iteration of about %.2g sweeps, whose g is known within %.2g, takes about %s with "
-           "%d thread%s of a processor of 2024; a fit has some ten, the first ones shorter.\n",
-           sweeps, p->precision, time, fit->problem.threads, fit->problem.threads == 1 ? "" : "s");
+    printf(
+        "Each of the last iterations, whose g is known within %.2g, takes about %.2g sweeps, "
+        "those of its %lld replicas together, and %s with %d thread%s of a processor of 2024, if "
+        "samples are as independent as usual; a pressure as a target takes more. A fit has some "
+        "four to twenty iterations, and most of the first ones are shorter.\n",
+        p->precision, sweeps, (long long)p->replicas, time, fit->problem.threads,
+        fit->problem.threads == 1 ? "" : "s");
     return STATUS_OK;
 }
 

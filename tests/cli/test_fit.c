@@ -2,6 +2,7 @@
 //
 // `mesofit fit` from outside: its files, the same bits for any threads and after any interruption,
 // and what `compare` and `plot` make of the results.
+#include "io/data_table.h"
 #include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
@@ -260,6 +261,30 @@ static void test_explain_tells_how_an_evaluation_measures_the_rdf(void **state) 
     assert_contains(result.out, "The method \"imc\" samples by a Monte Carlo of its own");
 }
 
+/// Sweeps of all replicas, as engine_steps of history.tsv counts them.
+static void test_explain_tells_how_many_sweeps_the_last_iterations_take(void **state) {
+    static struct run_program_result result;
+    struct data_table table;
+    write_fit(*state, "\"name\": \"imc\", \"replicas\": 4, \"equilibration\": 20, "
+                      "\"samples\": 50, \"every\": 1, \"iterations\": 6, \"precision\": 0.01");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "sweeps, those of its 4 replicas together");
+    static const char words[] = "within 0.01, takes about ";
+    const char *told = strstr(result.out, words);
+    assert_non_null(told);
+    const double sweeps = strtod(told + strlen(words), NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+    assert_true(result.code == CONVERGED || result.code == UNCONVERGED);
+    assert_ok(mf_data_table_read(&table, "out/history.tsv", 2));
+    const size_t column = mf_data_table_find(&table, "engine_steps") - 1;
+    const double *last = table.values + table.columns * (table.rows - 1) + column;
+    const double taken = last[0] - last[-(ptrdiff_t)table.columns];
+    mf_data_table_clear(&table);
+    print_message("told %g sweeps, taken %g\n", sweeps, taken);
+    assert_true(taken > sweeps / 3 && taken < 3 * sweeps);
+}
+
 /// Four replicas by 32 workers, and by two.
 static void test_explain_tells_which_number_keeps_all_ranks_busy(void **state) {
     static struct run_program_result result;
@@ -452,6 +477,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_genetic_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_genetic_with_forces_gives_the_same_bits_from_its_used_settings),
         TEST_WITHOUT_FIGURES(test_explain_tells_how_an_evaluation_measures_the_rdf),
+        TEST_WITHOUT_FIGURES(test_explain_tells_how_many_sweeps_the_last_iterations_take),
         TEST_WITHOUT_FIGURES(test_explain_tells_which_number_keeps_all_ranks_busy),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_interrupted_imc_by_dynamics_goes_on_with_the_same_bits),
