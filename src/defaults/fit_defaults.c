@@ -4,6 +4,7 @@
 #include "defaults/fit_choice.h"
 #include "defaults/fit_engine.h"
 #include "defaults/fit_unknowns.h"
+#include "dynamics/usual_step.h"
 #include "inversion/inversions.h"
 
 #include <math.h>
@@ -32,7 +33,7 @@ static bool lacks_verification(const struct fit_file *fit) {
 static void choose_shorter_steps(struct fit_choice *c) {
     const struct fit_place verification = mf_fit_defaults_verification_place(c);
     if (!c->fit->scene.given.time_step && !says_verification(c->fit, "time_step") &&
-        mf_verify_step_can_shorten(&c->fit->scene.setup))
+        mf_usual_step_applies(&c->fit->scene.setup))
         mf_fit_choice_give(c, &verification, "shorten_time_step", true);
 }
 
@@ -287,13 +288,6 @@ static enum status choose_without_pairs(struct fit_choice *c) {
     return STATUS_OK;
 }
 
-static double find_crossing(const struct fit_choice *c, const struct simulation_setup *setup) {
-    const double way = c->scales.neighbour;
-    return setup->integrator->mobility
-               ? way * way / (2 * setup->temperature * setup->integrator->mobility(setup))
-               : way * sqrt(c->mass / setup->temperature);
-}
-
 enum status mf_fit_defaults_choose(struct fit_file *fit, const struct fit_file *leader) {
     const struct simulation_setup *setup = &fit->scene.setup;
     const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
@@ -320,7 +314,7 @@ enum status mf_fit_defaults_choose(struct fit_file *fit, const struct fit_file *
         CHECK(choose_bins(&c, &rdf));
     c.scales = mf_fit_scales_find(&rdf, setup->temperature, fit_scales_little);
     c.mass = masses.maximum > 0 ? masses.minimum : 1;
-    c.crossing = find_crossing(&c, setup);
+    c.crossing = mf_usual_step_crossing(setup, c.scales.neighbour);
     c.range = c.scales.range;
     c.precision = mf_fit_defaults_precision(&c);
     CHECK(all ? choose_all(&c) : choose_simulation(&c));

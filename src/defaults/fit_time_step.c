@@ -3,6 +3,7 @@
 // The time step, where the run file leaves it to the program.
 #include "defaults/fit_choice.h"
 #include "defaults/fit_engine.h"
+#include "dynamics/usual_step.h"
 #include "dynamics/hybrid_step.h"
 #include "inversion/inversions.h"
 #include "observe/shear_viscosity.h"
@@ -84,18 +85,6 @@ double mf_fit_longest_molecule(const struct fit_choice *c) {
     return bonds * bond;
 }
 
-static double find_relaxing_step(const struct fit_choice *c, double curvature, double allowed) {
-    // With x = Δt Φ''/γ Euler's steps give a variance of T/(Φ'' (1 − x/2)); those of "brownian" the
-    // exact one, and a liquid of Lennard-Jones beads the temperature 1.002(4) with x up to 0.8.
-    static const double share_of_exact = 0.4;
-    const struct simulation_setup *setup = &c->fit->scene.setup;
-    const double share = setup->integrator == &mf_brownian ? share_of_exact : 2 * allowed;
-    return share / (curvature * setup->integrator->mobility(setup));
-}
-
-/// What the variance of a bond may be wrong by.
-static const double allowed_of_bonds = 0.003;
-
 static double find_fastest(const struct fit_choice *c) {
     const struct molecules *molecules = &c->fit->scene.molecules.molecules;
     const double length = shortest_bond(c);
@@ -110,29 +99,10 @@ static double find_stiff_step(const struct fit_choice *c) {
     // Friction is chosen later, and then aboba is the default.
     const struct integrator *integrator =
         c->fit->scene.given.dynamics ? c->fit->scene.setup.integrator : &mf_aboba;
-    const double fastest = find_fastest(c);
-    return integrator->mobility
-               ? find_relaxing_step(c, c->mass * fastest * fastest, allowed_of_bonds)
-               : sqrt(allowed_of_bonds / mf_hybrid_step_wrong(integrator)) / fastest;
-}
-
-static int64_t find_inner_steps(const struct fit_choice *c, double time_step) {
-    const double step = sqrt(allowed_of_bonds / mf_hybrid_step_wrong(&mf_velocity_verlet));
-    return 2 * (int64_t)ceil(time_step * find_fastest(c) / (2 * step)); // as aboba has it
+    return mf_usual_step_of_bonds(&c->fit->scene.setup, integrator, find_fastest(c), c->mass);
 }
 
 // The choice --------------------------------------------------------------------------------------
-
-/// The next lower of 1, 1.2, 1.5, 2, … times a power of 10.
-static double round_down(double value) {
-    static const double steps[] = {1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8};
-    const double power = pow(10, floor(log10(value) + 1e-9));
-    double rounded = power;
-    for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
-        if (steps[k] * power <= value * (1 + 1e-9))
-            rounded = steps[k] * power;
-    return rounded;
-}
 
 /// A whole fraction of the interval of targets at times, if there are any; else round in the units
 /// of the file.
@@ -145,14 +115,14 @@ static double fit_interval(const struct fit_choice *c, double time_step) {
                                     : 0;
     const double unit = mf_units_factor(&c->fit->scene.units, "tau");
     return interval > 0 ? interval / ceil(interval / time_step - 1e-9)
-                        : round_down(time_step * unit) / unit;
+                        : mf_usual_step_round(time_step * unit) / unit;
 }
 
 /// A step that the file gives and no simulation follows.
 static void doubt_time_step(struct fit_choice *c, double usual) {
     static const double many = 10;
     char given[FIT_CHOICE_TEXT_SIZE], own[FIT_CHOICE_TEXT_SIZE];
-    if (c->time_step > many * usual)
+    if (c->time_step > (1 - 1e-9) * many * usual)
         snprintf(c->fit->choices.doubt, FIT_CHOICE_SIZE,
                  "scene.time_step: %s is %.0f times as long as the program would choose by this "
                  "target, %s: left out, it is chosen",
@@ -178,17 +148,15 @@ static bool may_have_inner_steps(const struct fit_choice *c) {
            !asks_for_stress(c);
 }
 
-/// A step of the pairs, and the steps that molecules take in it, 0: its impulses resonate with half
-/// a period of the fastest bond, Ω Δt = π, and stay far from it (docs/figures.md, time steps).
+/// A step of the pairs, and the steps that molecules take in it, or 0.
 static double find_time_step(const struct fit_choice *c, double of_pairs, double stiff,
                              int64_t *inner_steps) {
-    static const double turn = 0.9;
-    const double longest = turn / find_fastest(c);
-    const double step = fit_interval(c, fmin(of_pairs, longest));
+    const double fastest = find_fastest(c);
+    const double step = fit_interval(c, fmin(of_pairs, mf_usual_step_of_impulses(fastest)));
     *inner_steps = 0;
     if (!may_have_inner_steps(c) || step <= stiff)
         return fit_interval(c, fmin(of_pairs, stiff));
-    *inner_steps = find_inner_steps(c, step);
+    *inner_steps = mf_usual_step_inner(step, fastest);
     return step;
 }
 
@@ -205,33 +173,22 @@ static void note_time_step(const struct fit_choice *c, double bound, double free
                            "variance",
                            step, (long long)c->fit->inner_steps);
     else if (stiff <= fmin(free, bound))
-        mf_fit_choice_note(c,
-                           "time step %s: the distributions of bonds and angles are to be right "
-                           "within 0.3 %% of their variance",
-                           step);
+        mf_fit_choice_note(c, "time step %s: %s", step, mf_usual_step_reason[USUAL_STEP_BONDS]);
     else if (bound < free)
         mf_fit_choice_note(c,
                            "time step %s: the curvature of -k_B T ln g is up to %s, at %s, and the "
                            "configurational temperature is to be right within 1 %%",
                            step, curvature, at);
     else
-        mf_fit_choice_note(
-            c, "time step %s: beads move a fiftieth of the distance to their neighbours", step);
+        mf_fit_choice_note(c, "time step %s: %s", step, mf_usual_step_reason[USUAL_STEP_FREE]);
 }
 
-/// Integrators of Verlet's kind give an oscillator of angular frequency Ω the configurational
-/// temperature T/(1 − (Ω Δt)²/4). Two beads oscillate with Ω² = 2 Φ''/m, and Φ is at most as steep
-/// as −k_B T ln g where pairs come near. What flies free moves a fiftieth of the way to its
-/// neighbours; without velocities it takes as long as the square of that of the time in which it
-/// diffuses there.
+/// Φ is at most as steep as −k_B T ln g where pairs come near.
 void mf_fit_defaults_time_step(struct fit_choice *c) {
-    static const double allowed = 0.01, way = 0.02;
-    const bool has_velocities = c->fit->scene.setup.integrator->mobility == NULL;
+    const struct simulation_setup *setup = &c->fit->scene.setup;
     const double stiff = find_stiff_step(c);
-    const double free = (has_velocities ? way : way * way) * c->crossing;
-    const double curvature_of_pair = 2 * c->scales.curvature;
-    const double bound = has_velocities ? sqrt(4 * allowed * c->mass / curvature_of_pair)
-                                        : find_relaxing_step(c, curvature_of_pair, allowed);
+    const double free = mf_usual_step_free(setup, c->crossing);
+    const double bound = mf_usual_step_of_pairs(setup, c->scales.curvature, c->mass);
     int64_t inner_steps;
     const double usual = find_time_step(c, fmin(free, bound), stiff, &inner_steps);
     double *const time_step = &c->fit->scene.setup.time_step;

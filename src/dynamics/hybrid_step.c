@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dynamics/hybrid_step.h"
 
+#include "curves/bonded_table.h"
+
 #include <math.h>
 
 /// The first time step, times ω of the fastest pair that ten k_B T can reach, ω² = 2 Φ''.
@@ -98,19 +100,27 @@ double mf_hybrid_step_wrong(const struct integrator *integrator) {
     return integrator == &mf_aboba ? 0.1 : 0.25;
 }
 
-/// ω² of the fastest group, each with the variance that is found for it.
+/// Whether the law of a group is there: one that a fit looks for is a table without points.
+static bool is_known(const struct bonded_curve *curve) {
+    return curve->law && !(bonded_is_table(curve->law) &&
+                           ((const struct bonded_table *)curve->parameters)->point == NULL);
+}
+
+/// ω² of the fastest group that has a law, each with the variance that is found for it.
 static double fastest_by(const struct molecules *molecules, double temperature,
                          double (*find_variance)(const struct bonded_curve *, int, double)) {
     double length = INFINITY, fastest = 0;
     for (int g = 0; g < molecules->groups[BONDED_BOND]; g++)
-        length =
-            fmin(length, mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve, temperature));
+        if (is_known(&molecules->group[BONDED_BOND][g].curve))
+            length =
+                fmin(length, mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve, temperature));
     for (int order = 0; order < BONDED_KINDS; order++)
         for (int g = 0; g < molecules->groups[order]; g++) {
-            const double variance =
-                find_variance(&molecules->group[order][g].curve, order, temperature);
-            fastest = fmax(fastest,
-                           mf_hybrid_step_squared_frequency(order, variance, length, temperature));
+            const struct bonded_curve *curve = &molecules->group[order][g].curve;
+            if (is_known(curve))
+                fastest = fmax(fastest, mf_hybrid_step_squared_frequency(
+                                            order, find_variance(curve, order, temperature), length,
+                                            temperature));
         }
     return fastest;
 }

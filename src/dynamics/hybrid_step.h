@@ -28,7 +28,7 @@ double mf_hybrid_step_squared_frequency(int order, double variance, double lengt
 /// (lab/molecules.md).
 double mf_hybrid_step_wrong(const struct integrator *integrator);
 
-/// ω² of the fastest group of molecules of mass 1 [1/τ²].
+/// ω² of the fastest group that has a law, of molecules of mass 1 [1/τ²]; 0: of none.
 double mf_hybrid_step_fastest(const struct molecules *molecules, double temperature);
 
 /// By the fastest pairs and the fastest terms of molecules of mass 1, those of tables with noise by

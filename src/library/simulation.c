@@ -7,6 +7,7 @@
 #include "io/units.h"
 #include "scene/heading.h"
 #include "scene/scene.h"
+#include "scene/scene_step.h"
 #include "library/guard.h"
 #include "library/memory_files.h"
 #include "library/scene_words.h"
@@ -44,6 +45,11 @@ static enum status read_root(struct scene *scene, struct json_document *document
     return status;
 }
 
+static void choose_step(struct scene *scene) {
+    char chosen[SCENE_STEP_SIZE];
+    mf_scene_step_choose(scene, chosen);
+}
+
 /// A scene of a file, or, with `own`, of the caller.
 static enum status read_scene(struct scene *scene, const char *file,
                               const struct mesofit_scene *own) {
@@ -70,6 +76,7 @@ static enum status open_scene(struct mesofit_simulation **simulation, const char
     enum status status = STATUS_OK;
     NEW_ARRAY(*simulation, 1);
     CHECK(read_scene(&(*simulation)->scene, file, own));
+    choose_step(&(*simulation)->scene);
     if (own) {
         (*simulation)->scene.setup.threads = own->threads;
         CHECK(mf_scene_words_add_own(own, &(*simulation)->scene));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "problem/verify_step.h"
 
+#include "dynamics/usual_step.h"
+
 #include <math.h>
 
 /// What a temperature may be off, relative, beside its errors.
@@ -9,15 +11,15 @@ static const double allowed = 0.01, errors = 3;
 /// What is not known within this says nothing of a step.
 static const double vague = 0.1;
 
-bool mf_verify_step_can_shorten(const struct simulation_setup *setup) {
-    const struct integrator *integrator = setup->integrator;
-    return !integrator->events && !integrator->samples && !integrator->model_time_step &&
-           integrator->solvent_particles == NULL;
-}
+struct density {
+    const struct inverse_problem *problem;
+    const struct table *potential;
+};
 
-/// g of a pair type where the potential is looked at: of the target, or of a gas.
-static double density_at(const struct inverse_problem *problem, const struct table *potential,
-                         int pair, double r) {
+/// That of the target, or of a gas.
+static double density_at(const void *context, int pair, double r) {
+    const struct density *of = context;
+    const struct inverse_problem *problem = of->problem;
     const struct rdf_bins *bins = &problem->compared.bins;
     const size_t k = (size_t)(r / bins->width);
     double phi;
@@ -25,39 +27,18 @@ static double density_at(const struct inverse_problem *problem, const struct tab
         return k < bins->count
                    ? problem->compared.target[TARGET_RDF].value[(size_t)pair * bins->count + k]
                    : 1;
-    mf_table_evaluate_pair(potential, pair, r, &phi, NULL, NULL);
+    mf_table_evaluate_pair(of->potential, pair, r, &phi, NULL, NULL);
     return exp(-phi / problem->scene.temperature);
-}
-
-/// The largest Φ'' of a pair type where pairs come.
-static double curvature_of(const struct inverse_problem *problem, const struct table *potential,
-                           int pair) {
-    static const double rare = 0.02;
-    const double spacing = 1 / mf_table_inverse_spacing(potential, pair);
-    double highest = 0, largest = 0;
-    for (int k = 0; k < TABLE_INTERVALS; k++)
-        highest = fmax(highest, density_at(problem, potential, pair, (k + 0.5) * spacing));
-    for (int k = 0; k < TABLE_INTERVALS; k++) {
-        const double r = (k + 0.5) * spacing;
-        double curvature;
-        mf_table_evaluate_pair(potential, pair, r, NULL, NULL, &curvature);
-        if (density_at(problem, potential, pair, r) > rare * highest)
-            largest = fmax(largest, curvature);
-    }
-    return largest;
 }
 
 double mf_verify_step_of_potential(const struct inverse_problem *problem,
                                    const struct table *potential) {
-    const struct attributes_range masses =
-        mf_attributes_span(&problem->scene.attribute[ATTRIBUTES_MASS]);
-    const double mass = masses.maximum > 0 ? masses.minimum : 1;
-    double largest = 0;
-    if (potential == NULL || !simulation_has_velocities(&problem->scene))
+    const struct simulation_setup *scene = &problem->scene;
+    if (potential == NULL || !simulation_has_velocities(scene))
         return INFINITY;
-    for (int pair = 0; pair < potential->curves; pair++)
-        largest = fmax(largest, curvature_of(problem, potential, pair));
-    return sqrt(4 * allowed * mass / (2 * largest));
+    const double largest =
+        mf_usual_step_curvature(potential, density_at, &(struct density){problem, potential}, NULL);
+    return mf_usual_step_of_pairs(scene, largest, mf_usual_step_mass(scene));
 }
 
 struct verify_step mf_verify_step_begin(const struct inverse_problem *problem,
@@ -65,7 +46,7 @@ struct verify_step mf_verify_step_begin(const struct inverse_problem *problem,
                                         bool shortens) {
     const double holds = mf_verify_step_of_potential(problem, potential);
     struct verify_step step = {.used = first, .first = first, .would_hold = holds};
-    step.shortens = shortens && mf_verify_step_can_shorten(&problem->scene);
+    step.shortens = shortens && mf_usual_step_applies(&problem->scene);
     while (step.shortens && step.halvings < VERIFY_STEP_HALVINGS && step.used > M_SQRT2 * holds) {
         step.used *= 0.5;
         step.halvings++;

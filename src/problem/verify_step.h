@@ -38,9 +38,6 @@ struct verify_step {
     int halvings;  ///< of `first`
 };
 
-/// Whether the steps of an integrator are an approximation that can be made finer.
-bool mf_verify_step_can_shorten(const struct simulation_setup *setup);
-
 /// The step by which Verlet's integrator would have the configurational temperature of two beads
 /// right within 1 % where Φ bends most up and pairs come: at g above 0.02 of its maximum, that of
 /// the target, or exp(−Φ/k_B T) without one. Infinite without velocities. Tested:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "scene/scene_doubts.h"
 
+#include "dynamics/usual_step.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -8,9 +10,11 @@
 /// Kelvins: below, all but neon, hydrogen and helium are solid; above, molecules come apart.
 static const double coldest = 60, hottest = 3000, celsius = 273.15;
 
-/// Of the time in which a bead reaches its neighbours. The program takes a fiftieth, and
-/// dissipative particles as in the literature up to a seventh.
-static const double longest_step = 0.2;
+/// How many times as long as is usual a step may be without a word. Of the time in which a bead
+/// reaches its neighbours a fiftieth is usual, and dissipative particles as in the literature take
+/// up to a seventh; Ω Δt of a pair is 1 with five times, and four times make the variance of a bond
+/// wrong by 5 %.
+static const double times_free = 7.5, times_of_pairs = 5, times_of_bonds = 4;
 
 /// Of atoms, in nm.
 static const double shortest_bond = 0.05;
@@ -27,15 +31,10 @@ __attribute__((format(printf, 2, 3))) static void tell(const struct scene_doubts
 
 struct scene_scales mf_scene_scales(const struct scene *scene) {
     const struct simulation_setup *setup = &scene->setup;
-    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
-    const double mass = masses.maximum > 0 ? masses.minimum : 1;
     const double density = (double)setup->placement.count / mf_box_volume(&setup->box);
     const double distance = pow(density, -1.0 / setup->box.dimensions);
-    const double mobility = setup->integrator->mobility ? setup->integrator->mobility(setup) : 0;
     return (struct scene_scales){.distance = distance,
-                                 .time = mobility > 0 ? distance * distance /
-                                                            (2 * setup->temperature * mobility)
-                                                      : distance * sqrt(mass / setup->temperature)};
+                                 .time = mf_usual_step_crossing(setup, distance)};
 }
 
 static void doubt_temperature(const struct scene *scene,
@@ -62,18 +61,27 @@ static void doubt_temperature(const struct scene *scene,
 static void doubt_time_step(const struct scene *scene,
                             const struct scene_doubts_listener *listener) {
     const struct simulation_setup *setup = &scene->setup;
-    const double time = mf_scene_scales(scene).time;
-    const double factor = mf_units_factor(&scene->units, "tau");
-    char unit[UNITS_NAME_SIZE];
-    if (setup->integrator->samples || setup->integrator->events ||
-        !(setup->time_step > longest_step * time))
+    if (setup->integrator->samples || setup->integrator->events)
         return;
+    const struct usual_step usual = mf_usual_step_find(setup);
+    const double step = setup->time_step, factor = mf_units_factor(&scene->units, "tau");
+    char unit[UNITS_NAME_SIZE];
     mf_units_name(&scene->units, "tau", unit);
-    tell(listener,
-         "time_step: in %.4g %s a bead moves %.2g of the distance to its neighbours, which no "
-         "forces "
-         "follow; a fiftieth is usual, %.2g %s",
-         factor * setup->time_step, unit, setup->time_step / time, factor * 0.02 * time, unit);
+    if (step > times_free * usual.free)
+        tell(listener,
+             "time_step: in %.4g %s a bead moves %.2g of the distance to its neighbours, which no "
+             "forces follow; a fiftieth is usual, %.2g %s",
+             factor * step, unit, step / mf_scene_scales(scene).time, factor * usual.free, unit);
+    else if (step > times_of_pairs * usual.pairs)
+        tell(listener,
+             "time_step: %.4g %s is %.2g times as long as this potential allows if the "
+             "configurational temperature is to be right within 1 %%, %.2g %s",
+             factor * step, unit, step / usual.pairs, factor * usual.pairs, unit);
+    else if (step > times_of_bonds * usual.bonds)
+        tell(listener,
+             "time_step: %.4g %s is %.2g times as long as bonds, angles and dihedrals allow if "
+             "their distributions are to be right within 0.3 %% of their variance, %.2g %s",
+             factor * step, unit, step / usual.bonds, factor * usual.bonds, unit);
 }
 
 static void doubt_length(const struct scene *scene, const char *key, double rest,

@@ -22,8 +22,8 @@ struct scene_scales mf_scene_scales(const struct scene *scene);
 /// Bonds are at most so many mean distances long.
 static const double scene_longest_bond = 2.5;
 
-/// Tell of a temperature in kelvins where none are meant, or in degrees Celsius; a time step of
-/// more than a fifth of the time in which a bead reaches its neighbours; a bond that is longer than
-/// two and a half mean distances of the beads, or shorter than any between atoms; an angle of at
-/// most π degrees. Tested: cli/test_doubts.
+/// Tell of a temperature in kelvins where none are meant, or in degrees Celsius; a time step
+/// many times as long as beads, their potential or their bonds allow (dynamics/usual_step.h); a
+/// bond that is longer than two and a half mean distances of the beads, or shorter than any between
+/// atoms; an angle of at most π degrees. Tested: cli/test_doubts.
 void mf_scene_doubts(const struct scene *scene, const struct scene_doubts_listener *listener);

@@ -6,10 +6,12 @@
 #include "scene/heading.h"
 #include "scene/scene.h"
 #include "scene/scene_doubts.h"
+#include "scene/scene_step.h"
 #include "io/checkpoint.h"
 #include "report/progress.h"
 #include "work/explain.h"
 #include "work/simulate_observables.h"
+#include "work/simulate_remarks.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,8 +27,9 @@ struct run {
     struct measure_plan plan;
     struct heading heading;
     struct input_files inputs;
-    int64_t equilibration; ///< of the file; that of the plan grows with a change
-    uint64_t digest;       ///< of used.json
+    int64_t equilibration;        ///< of the file; that of the plan grows with a change
+    uint64_t digest;              ///< of used.json
+    char chosen[SCENE_STEP_SIZE]; ///< how the time step was, or ""
     struct checkpoint_pace pace;
     struct simulation simulation;
     struct simulate_observables observables;
@@ -67,6 +70,7 @@ static enum status read_file(struct run *run, const char *file, const struct run
         status = mf_simulate_observables_read(&run->observables, &root, &run->scene.setup);
     mf_json_finish(&root);
     TRY(mf_json_close(document, status));
+    mf_scene_step_choose(&run->scene, run->chosen);
     if (options->callers)
         TRY(mf_simulate_observables_add(&run->observables, options->callers));
     if (options->has_seed)
@@ -194,42 +198,6 @@ static void write_numbers(const struct simulation *simulation, struct json_write
         mf_json_write_number(writer, number[k].name, number[k].value);
 }
 
-struct remark {
-    char line[SCENE_MANY_BODY_REMARK_SIZE];
-};
-
-/// Where local densities went beyond what their energies are tabulated for, or have none. Returns
-/// how many lines.
-static int find_remarks(const struct run *run, struct remark remark[MANY_BODY_MAX_TERMS]) {
-    const struct scene_many_body *many_body = &run->scene.many_body;
-    const struct simulation *simulation = &run->simulation;
-    int count = 0;
-    for (int k = 0; k < simulation->interactions; k++) {
-        const struct interaction_use *use = &simulation->interaction[k];
-        for (int t = 0; use->choice.kind == &mf_many_body && t < many_body->law->terms; t++)
-            count += mf_scene_many_body_remark(many_body, use->state, t, &run->scene.units,
-                                               remark[count].line);
-    }
-    return count;
-}
-
-static void print_remarks(struct run *run) {
-    struct remark remark[MANY_BODY_MAX_TERMS];
-    const int count = find_remarks(run, remark);
-    for (int k = 0; k < count; k++)
-        mf_progress_print(&run->progress, "mesofit: warning: %s", remark[k].line);
-}
-
-static void write_remarks(const struct run *run, struct json_writer *writer) {
-    struct remark remark[MANY_BODY_MAX_TERMS];
-    char text[MANY_BODY_MAX_TERMS * sizeof *remark] = "";
-    const int count = find_remarks(run, remark);
-    for (int k = 0; k < count; k++)
-        strcat(strcat(text, k > 0 ? "; " : ""), remark[k].line);
-    if (count > 0)
-        mf_json_write_text(writer, "many_body_warning", text);
-}
-
 static enum status write_summary(const struct run *run, enum status how, double taken) {
     const struct observable_results results = results_of(run);
     struct json_writer *writer = mf_json_writer_create();
@@ -242,7 +210,7 @@ static enum status write_summary(const struct run *run, enum status how, double 
     mf_simulate_changes_write(&run->kept.changes, writer);
     mf_json_write_number(writer, "steps_per_second", (double)run->simulation.step / taken);
     write_numbers(&run->simulation, writer);
-    write_remarks(run, writer);
+    mf_simulate_remarks_write(&run->scene, &run->simulation, writer);
     mf_simulate_observables_write_summary(&run->observables, &results, writer);
     mf_json_write_number(writer, "seed", (double)run->heading.seed);
     mf_json_write_text(writer, "version", mf_version);
@@ -289,6 +257,8 @@ static void print_doubt(void *context, const char *line) {
 static void warn(struct run *run) {
     const char *warning = mf_scene_warning(&run->scene);
     mf_progress_print_scale(&run->progress, &run->scene.units);
+    if (run->chosen[0])
+        mf_progress_print(&run->progress, "%s", run->chosen);
     if (warning)
         mf_progress_print(&run->progress, "mesofit: warning: %s", warning);
     mf_scene_doubts(&run->scene, &(struct scene_doubts_listener){print_doubt, &run->progress});
@@ -373,7 +343,7 @@ static enum status write_finished(struct run *run) {
     TRY(write_results(run, mf_simulate_observables_judge(&run->observables, &results), taken));
     remove_checkpoint(run);
     mf_simulate_observables_print(&run->observables, &results, &run->progress);
-    print_remarks(run);
+    mf_simulate_remarks_print(&run->scene, &run->simulation, &run->progress);
     describe_memory(run, 1, memory);
     mf_progress_print(&run->progress, "%llu steps in %.3g s, %s; results in %s",
                       (unsigned long long)run->simulation.step, taken, memory, run->folder.path);
@@ -440,6 +410,8 @@ enum status mf_simulate_explain(const char *file, const struct run_options *opti
     // All that a run refuses before its first step.
     CHECK(begin_measuring(run, file));
     mf_explain_scale(stdout, &run->scene.units);
+    if (run->chosen[0])
+        printf("%s\n", run->chosen);
     mf_explain_doubts(stdout, &run->scene);
     mf_explain_scene(stdout, &whole, &run->scene.units, run->observables.use, run->plan.every);
     describe_memory(run, share, memory);

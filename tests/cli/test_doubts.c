@@ -2,6 +2,8 @@
 //
 // Numbers in another unit than that of the file, which no liquid has: each has a warning that names
 // its key, and the same in the right unit has none.
+#include "shared/is_close.h"
+#include "shared/results.h"
 #include "shared/run_program.h"
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
@@ -106,6 +108,89 @@ static void test_bonds_in_angstrom_and_angles_in_radians_are_doubted(void **stat
     assert_doubted(*state, "simulate", scene, "0.003", "0.3", "warning: time_step: in 0.3 ps");
 }
 
+/// A scene without a time step: by the rule of a fit's verification; ten times that is doubted.
+static void test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted(void **state) {
+    static const char beads[] =
+        "{\"box\": [6, 6, 6], \"particles\": {\"count\": 180}, \"time_step\": 0,\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+        "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n";
+    static const struct {
+        const char *scene, *given, *from, *to, *chosen, *step, *long_one, *doubt;
+        double used;
+    } cases[] = {
+        {beads, "\"time_step\": 0,", NULL, NULL,
+         "chosen: time step 0.02 tau: beads move a fiftieth of the distance to their neighbours",
+         "0.02", "0.2", "warning: time_step: in 0.2 tau a bead moves 0.19 of the distance", 0.02},
+        {beads, "\"time_step\": 0,", "\"law\": \"soft-repulsion\", \"a\": 25",
+         "\"law\": \"lennard-jones\", \"cutoff\": 2.5",
+         "chosen: time step 0.003 tau: the curvature of the potential is up to ", "0.003", "0.03",
+         "warning: time_step: 0.03 tau is 7.6 times as long as this potential allows", 0.003},
+        {scene, "\"time_step\": 0.003,", NULL, NULL,
+         "chosen: time step 0.006 ps: the distributions of bonds and angles are to be right within "
+         "0.3 % of their variance",
+         "0.006", "0.06",
+         "warning: time_step: 0.06 ps is 8.1 times as long as bonds, angles and dihedrals allow if "
+         "their distributions are to be right within 0.3 % of their variance, 0.0074 ps",
+         0.006},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        char text[2048], given[64], *at;
+        snprintf(text, sizeof text, "%s", cases[k].scene);
+        at = cases[k].from ? strstr(text, cases[k].from) : NULL;
+        if (at) { // another law
+            char rest[2048];
+            snprintf(rest, sizeof rest, "%s", at + strlen(cases[k].from));
+            snprintf(at, sizeof text - (size_t)(at - text), "%s%s", cases[k].to, rest);
+        }
+        small_inputs_write(*state, "run.json", text, cases[k].given, "");
+        RUN_PROGRAM(&result, "simulate", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.out, cases[k].chosen);
+        assert_null(strstr(result.out, "warning: time_step"));
+        RUN_PROGRAM(&result, "simulate", "run.json", "-o", "out", "--force");
+        assert_contains(result.err, cases[k].chosen);
+        assert_close(results_number("out/used.json", "time_step"), cases[k].used, 1e-12);
+        snprintf(given, sizeof given, "\"time_step\": %s,", cases[k].step);
+        small_inputs_write(*state, "run.json", text, cases[k].given, given);
+        RUN_PROGRAM(&result, "simulate", "run.json", "--explain");
+        assert_null(strstr(result.out, "chosen: time step"));
+        assert_null(strstr(result.out, "warning: time_step"));
+        snprintf(given, sizeof given, "\"time_step\": %s,", cases[k].long_one);
+        small_inputs_write(*state, "run.json", text, cases[k].given, given);
+        RUN_PROGRAM(&result, "simulate", "run.json", "--explain");
+        assert_contains(result.out, cases[k].doubt);
+        RUN_PROGRAM(&result, "simulate", "run.json", "-o", "out", "--force");
+        assert_contains(result.err, cases[k].doubt);
+    }
+}
+
+/// The same step in a fit of molecules whose bonds have a law, explained and run.
+static void test_long_time_step_of_molecules_is_doubted_in_fits(void **state) {
+    static const char doubt[] = "warning: scene.time_step: 0.06 ps is 8.1 times as long as bonds, ";
+    static const char fit[] =
+        "{\"units\": \"nm-ps\", \"target\": {\"bond_angles\": {\"bend\": {\"file\":\n"
+        "\"bend.tsv\"}}}, \"scene\": {\"box\": [4, 4, 4], \"temperature\": 298,\n"
+        "\"particles\": {\"mass\": 18.015}, \"time_step\": STEP,\n"
+        "\"bonds\": {\"bond\": {\"law\": \"harmonic\", \"k\": 5000, \"length\": 0.3}},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 60, \"cutoff\": 0.3},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 5, \"cutoff\": 0.3},\n"
+        "\"molecules\": {\"chain\": {\"count\": 60, \"chain\": {\"type\": \"A\", \"length\": 3,\n"
+        "\"bond\": \"bond\", \"angle\": \"bend\"}}}},\n"
+        "\"method\": {\"name\": \"ibi\", \"iterations\": 1, \"samples\": 8, \"precision\": 1},\n"
+        "\"verification\": {\"replicas\": 2, \"equilibration\": 1, \"samples\": 2, "
+        "\"every\": 1}}\n";
+    write_distribution(*state, "bend.tsv", 109, 3);
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "run.json", fit, "STEP", k ? "0.06" : "0.006");
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.out, doubt) != NULL, k);
+        RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force");
+        assert_int_equal(strstr(result.err, doubt) != NULL, k);
+    }
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, enter, small_inputs_leave)
 
 int main(void) {
@@ -113,6 +198,8 @@ int main(void) {
         return 1;
     const struct CMUnitTest tests[] = {
         TEST(test_numbers_that_no_liquid_has_are_doubted),
+        TEST(test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted),
+        TEST(test_long_time_step_of_molecules_is_doubted_in_fits),
         TEST(test_bonds_in_angstrom_and_angles_in_radians_are_doubted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -24,7 +24,8 @@ static enum mesofit_status carry_out(struct mesofit_run *run, const char *const 
     carry_out((run), (const char *const[]){__VA_ARGS__, NULL}, (inputs))
 
 static const char small_scene[] =
-    "{\"box\": [4, 4, 4], \"particles\": {\"count\": 150}, \"conservative\": {\"law\": "
+    "{\"box\": [4, 4, 4], \"particles\": {\"count\": 150}, \"time_step\": 0.01, \"conservative\": "
+    "{\"law\": "
     "\"soft-repulsion\", \"a\": 25}, \"dissipative\": {\"law\": \"power\", \"sigma\": 3}, "
     "\"measure\": {\"equilibration\": 100, \"samples\": 40, \"every\": 5}, \"rdf\": {\"range\": 1, "
     "\"bins\": 20}}";
