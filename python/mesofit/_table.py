@@ -183,7 +183,7 @@ class Curves:
 
     Notes
     -----
-    ``curves["A-B"]`` is a `Table`, and ``for name, table in curves.items()`` has all of them. Of a
+    ``curves["A-B"]``, or ``curves["B-A"]``, is a `Table`, and ``for name, table in curves.items()`` has all of them. Of a
     single one ``curves["phi"]`` is a column, shape (rows,), and ``numpy.asarray(curves)`` its
     values.
     """
@@ -258,9 +258,16 @@ class Curves:
         """
         return self.table.to_pandas()
 
+    def _named(self, part: object) -> object:
+        """The name of a pair as the tables have it, of "B-A", too."""
+        words = part.split("-") if isinstance(part, str) else []
+        turned = ("-".join(words[n:] + words[:n]) for n in range(1, len(words)))
+        return part if part in self._tables else next(
+            (name for name in turned if name in self._tables), part)
+
     def __getitem__(self, part: str) -> Table | Any:
-        if part in self._tables:
-            return self._tables[part]
+        if self._named(part) in self._tables:
+            return self._tables[self._named(part)]
         if len(self._tables) == 1:
             return self.table[part]
         raise InputError(f"{self.name}: no \"{part}\"; there are {', '.join(self._tables)}")
@@ -269,7 +276,7 @@ class Curves:
         return iter(self._tables)
 
     def __contains__(self, part: object) -> bool:
-        return part in self._tables or (len(self._tables) == 1 and part in self.table)
+        return self._named(part) in self._tables or (len(self._tables) == 1 and part in self.table)
 
     def keys(self) -> KeysView[str]:
         """Names of the pairs of types.

@@ -65,6 +65,7 @@ def test_curves_of_a_mixture_have_names(matplotlib):
                           np.array([[0.1, 5.0], [0.2, -1], [0.3, 0]]))
     curves = mesofit.Curves("potential", {"A-A": table, "A-B": table})
     assert len(curves.plot().lines) == 2
+    assert curves["B-A"] is curves["A-B"] and "B-A" in curves and "B-C" not in curves
     with pytest.raises(mesofit.InputError, match="there are 2"):
         curves.table
     with pytest.raises(mesofit.InputError, match="A-A, A-B"):

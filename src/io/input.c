@@ -4,8 +4,12 @@
 #include "base/growing.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
+
+enum { INPUT_PATH_SIZE = 4096 };
 
 /// What a file is if it is none that can be read to its end; NULL if it is one.
 static const char *wrong_kind(const struct stat *about) {
@@ -16,6 +20,33 @@ static const char *wrong_kind(const struct stat *about) {
                                       : "a device";
 }
 
+/// Whether there is a file of the same name but for a pair of types in the other order:
+/// "rdf_B-A.tsv" for "rdf_A-B.tsv", "B-A.dist.tgt" for "A-B.dist.tgt".
+static bool find_other_order(const char *file, char other[INPUT_PATH_SIZE]) {
+    const char *const slash = strrchr(file, '/'), *const base = slash ? slash + 1 : file;
+    const char *const end = base + strcspn(base, ".");
+    for (const char *pair = base; pair < end; pair += strcspn(pair, "_.") + 1)
+        for (const char *dash = pair + 1; dash + 1 < end; dash++) {
+            if (*dash != '-')
+                continue;
+            snprintf(other, INPUT_PATH_SIZE, "%.*s%.*s-%.*s%s", (int)(pair - file), file,
+                     (int)(end - dash - 1), dash + 1, (int)(dash - pair), pair, end);
+            if (strcmp(other, file) != 0 && access(other, R_OK) == 0)
+                return true;
+        }
+    return false;
+}
+
+static enum status fail_to_open(const char *file, int error) {
+    char other[INPUT_PATH_SIZE];
+    if (error == ENOENT && find_other_order(file, other))
+        return mf_status_fail(STATUS_IO,
+                              "%s: %s, but %s, the same pair in the other order, is "
+                              "there",
+                              file, strerror(error), other);
+    return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(error));
+}
+
 enum status mf_input_open(FILE **stream, const char *file) {
     struct stat about;
     *stream = NULL;
@@ -23,7 +54,7 @@ enum status mf_input_open(FILE **stream, const char *file) {
     // opened.
     const char *kind = stat(file, &about) == 0 ? wrong_kind(&about) : NULL;
     if (kind == NULL && (*stream = fopen(file, "rbe")) == NULL)
-        return mf_status_fail(STATUS_IO, "%s: %s", file, strerror(errno));
+        return fail_to_open(file, errno);
     if (kind == NULL && fstat(fileno(*stream), &about) == 0)
         kind = wrong_kind(&about);
     if (kind == NULL)

@@ -247,6 +247,11 @@ static void test_fit_of_a_mixture_is_refused_in_a_line_when_a_pair_is_wrong(void
            (const char *[]){"run.json: target.rdf.C-B: unknown pair", NULL});
     refuse(*state, "target/rdf_A-B.tsv", "target/none.tsv", 1,
            (const char *[]){"run.json: target.rdf.B-A.file", "none.tsv", NULL});
+    refuse(
+        *state, "target/rdf_A-B.tsv", "target/rdf_B-A.tsv", 1,
+        (const char *[]){"target/rdf_B-A.tsv: No such file or directory, but target/rdf_A-B.tsv, "
+                         "the same pair in the other order, is there",
+                         NULL});
     refuse(*state, TRUTH_AB, "", 1,
            (const char *[]){"run.json: unknowns.potential.truth.A-B: missing", NULL});
     refuse(*state, "{\n\"A-A\": {\"law\"", "{\n\"A-C\": {\"law\"", 1,
