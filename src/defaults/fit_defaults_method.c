@@ -4,6 +4,7 @@
 #include "defaults/fit_choice.h"
 #include "defaults/methods.h"
 #include "inversion/inversion.h"
+#include "observe/kirkwood_buff.h"
 #include "problem/evaluate.h"
 #include "system/scaled_system.h"
 
@@ -123,11 +124,15 @@ static double choose_particles(const struct fit_choice *c) {
     const double width = fmax(margin * reach, joined ? reach + mf_fit_longest_molecule(c) : 0);
     const double share = pow(width / mf_box_shortest(&c->fit->scene.setup.box), c->dimensions);
     const double wanted = ceil(fmax(min, share * c->count));
-    if (joined && wanted > worth_it * c->count)
+    // Integrals are those of the waves of a box, of which a small one has few.
+    const bool integrals = c->fit->files.given[mf_kirkwood_buff_kind()];
+    if (joined && (integrals || wanted > worth_it * c->count))
         return 0;
-    return (double)mf_scaled_system_min(c->rdf->composition,
-                                        joined ? &c->fit->scene.molecules.molecules.topology : NULL,
-                                        (int64_t)wanted, distortion);
+    const double particles = (double)mf_scaled_system_min(
+        c->rdf->composition, joined ? &c->fit->scene.molecules.molecules.topology : NULL,
+        (int64_t)wanted, distortion);
+    // One molecule of a kind has its share of hardly any other number.
+    return joined && particles > worth_it * c->count ? 0 : particles;
 }
 
 enum status mf_fit_defaults_take_method(struct fit_choice *c, const struct inverse_method *method) {

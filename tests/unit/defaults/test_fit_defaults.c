@@ -244,6 +244,37 @@ static void test_fit_defaults_cut_the_steps_of_pairs_for_bonds(void **state) {
     }
 }
 
+/// Molecules are sampled in a smaller system where that halves the scene: not for the integrals of
+/// its waves, nor where a kind has one molecule, whose share any other number changes.
+static void test_fit_defaults_sample_molecules_in_half_of_the_scene_or_all(void **state) {
+    static const struct {
+        const char *target, *others;
+        bool smaller;
+    } cases[] = {{"", "", true},
+                 {", \"kirkwood_buff\": {\"value\": -1, \"error\": 0.1}", "", false},
+                 {"",
+                  ", \"one\": {\"count\": 1, \"chain\": {\"type\": \"A\", \"length\": 3, \"bond\": "
+                  "\"spring\"}}",
+                  false}};
+    write_target(state, 0.002);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct fit_file fit;
+        char text[2048];
+        snprintf(text, sizeof text,
+                 "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}%s}, "
+                 "\"scene\": {\"box\": [24, 24, 24], \"bonds\": {\"spring\": {\"law\": "
+                 "\"harmonic\", \"k\": 100, \"length\": 0.5}}, \"molecules\": {\"dimer\": "
+                 "{\"count\": 2000, \"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": "
+                 "\"spring\"}}%s}}}",
+                 cases[k].target, cases[k].others);
+        assert_ok(read_run(state, &fit, "run.json", text));
+        const int64_t particles =
+            ((const struct inversion_parameters *)fit.method_parameters)->particles;
+        assert_in_range(particles, cases[k].smaller ? 700 : 0, cases[k].smaller ? 2000 : 0);
+        mf_fit_file_clear(&fit);
+    }
+}
+
 /// Lengths of a bond of k = 3000 in bins from a third to all of their standard deviation, 0.018,
 /// which each have the mean of a normal density: its frequency is found within an eighth.
 static void test_fit_defaults_know_a_bond_by_coarse_bins(void **state) {
@@ -513,6 +544,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_how_many_beads_beside_a_method),
         IN_FOLDER(test_fit_defaults_choose_no_count_beside_a_file_of_places),
         IN_FOLDER(test_fit_defaults_cut_the_steps_of_pairs_for_bonds),
+        IN_FOLDER(test_fit_defaults_sample_molecules_in_half_of_the_scene_or_all),
         IN_FOLDER(test_fit_defaults_know_a_bond_by_coarse_bins),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),
