@@ -79,6 +79,9 @@ static void test_the_topology_is_whole(void **state) {
     for (int k = 0; k < 2; k++) {
         const struct topology_kind *kind = &small.kind[k], *from = &topology.kind[k];
         assert_string_equal(kind->name, from->name);
+        assert_int_equal(kind->exclude, from->exclude);
+        assert_memory_equal(kind->near_start, from->near_start,
+                            (size_t)(from->beads + 1) * sizeof *from->near_start);
         for (int order = 0; order < BONDED_KINDS; order++) {
             assert_int_equal(kind->terms[order], from->terms[order]);
             if (kind->terms[order] > 0)
