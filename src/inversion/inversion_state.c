@@ -34,20 +34,36 @@ static enum status check_shares(const struct inversion_state *state,
         (long long)mf_scaled_system_min(composition, topology, wanted, max_distortion));
 }
 
+/// The smallest number to ask for that makes so many beads, no more than the scene has: molecules
+/// are whole, and may be rounded down.
+static int64_t find_least(const struct simulation_setup *scene, const struct topology *topology,
+                          double beads) {
+    const int64_t all = mf_composition_particles(&scene->composition);
+    int64_t particles = (int64_t)ceil(beads);
+    for (; particles < all; particles++) {
+        const struct scaled_system system =
+            mf_scaled_system(&scene->composition, topology, particles);
+        if ((double)mf_composition_particles(&system.composition) >= beads)
+            break;
+    }
+    return particles;
+}
+
 /// Of each pair one image is in range.
-static enum status check_edge(const struct inversion_state *state, int64_t wanted) {
+static enum status check_edge(const struct inversion_state *state, const struct topology *topology,
+                              int64_t wanted) {
     const struct simulation_setup *scene = &state->problem->scene;
     const double range = mf_rdf_bins_range(&state->problem->targets.bins);
     const double edge = mf_box_shortest(&state->box);
     const double share = pow(2 * range / mf_box_shortest(&scene->box), scene->box.dimensions);
+    const double beads = share * (double)mf_composition_particles(&scene->composition);
     if (!state->problem->unknown[UNKNOWN_POTENTIAL].wanted || edge >= 2 * range)
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "method.particles: %lld make a box whose shortest edge, %g" STATUS_LENGTH
-                          ", is below twice the range of g(r), %g" STATUS_LENGTH
-                          "; %.0f are the least",
-                          (long long)wanted, edge, range,
-                          ceil(share * (double)mf_composition_particles(&scene->composition)));
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "method.particles: %lld make a box whose shortest edge, %g" STATUS_LENGTH
+        ", is below twice the range of g(r), %g" STATUS_LENGTH "; %lld are the least",
+        (long long)wanted, edge, range, (long long)find_least(scene, topology, beads));
 }
 
 /// As many particles as are asked for, at the densities of the scene.
@@ -65,7 +81,7 @@ static enum status choose_size(struct inversion_state *state) {
     state->composition = system.composition;
     state->box = mf_box_scaled(&scene->box, (double)mf_composition_particles(&system.composition) /
                                                 (double)count);
-    TRY(check_edge(state, wanted));
+    TRY(check_edge(state, topology, wanted));
     return topology ? mf_scaled_system_topology(&system, topology, &state->topology) : STATUS_OK;
 }
 

@@ -382,6 +382,19 @@ static void test_fit_molecules_tells_a_wrong_name_in_one_line(void **state) {
     }
 }
 
+/// 37 beads would hold the range, but of 12.3 chains there are 12.
+static void test_fit_molecules_names_a_number_that_whole_molecules_make(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "bad.json", run, "[4.4, 4.4, 4.4]", "[4.5, 4.5, 4.5]");
+    char *text = temporary_folder_read("bad.json");
+    small_inputs_write(*state, "bad.json", text, "\"replicas\": 2, \"equilibration\": 40",
+                       "\"particles\": 37");
+    free(text);
+    RUN_PROGRAM(&result, "fit", "bad.json", "-o", "bad", "--force");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "; 38 are the least");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_fit_molecules_again_with_the_same_bits, enter,
@@ -404,6 +417,8 @@ int main(void) {
             small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_warns_of_steps_too_long_for_bonds, enter,
                                         small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_names_a_number_that_whole_molecules_make,
+                                        enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_refuses_what_cannot_be, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_tells_a_wrong_name_in_one_line, enter,
