@@ -109,6 +109,14 @@ double mf_fit_defaults_precision(const struct fit_choice *c) {
 /// saved is equilibration.
 static const double worth_it = 0.5;
 
+/// Whether molecules may be sampled in another number. Integrals of Kirkwood and Buff are those of
+/// the waves of a box, of which a small one has few.
+static bool may_be_fewer(const struct fit_choice *c) {
+    return !c->fit->files.given[mf_kirkwood_buff_kind()] &&
+           mf_scaled_system_is_alike(c->rdf->composition,
+                                     &c->fit->scene.molecules.molecules.topology);
+}
+
 /// A system that is large enough for the range, whatever the shape of the box, and in which no
 /// molecule meets its own image; 0: that of the scene. States of other densities have other
 /// particles in a box of one width.
@@ -124,9 +132,7 @@ static double choose_particles(const struct fit_choice *c) {
     const double width = fmax(margin * reach, joined ? reach + mf_fit_longest_molecule(c) : 0);
     const double share = pow(width / mf_box_shortest(&c->fit->scene.setup.box), c->dimensions);
     const double wanted = ceil(fmax(min, share * c->count));
-    // Integrals are those of the waves of a box, of which a small one has few.
-    const bool integrals = c->fit->files.given[mf_kirkwood_buff_kind()];
-    if (joined && (integrals || wanted > worth_it * c->count))
+    if (joined && (!may_be_fewer(c) || wanted > worth_it * c->count))
         return 0;
     const double particles = (double)mf_scaled_system_min(
         c->rdf->composition, joined ? &c->fit->scene.molecules.molecules.topology : NULL,

@@ -173,7 +173,10 @@ static bool is_hopeless(struct sampling *sampling) {
     const struct targets *targets = &sampling->state->problem->targets;
     struct inversion_assessment *assessment = &sampling->state->assessment;
     const struct replicas_plan min = plan(inversion, sampling->state, 1);
-    const uint64_t first = replicas_plan_sweeps(&min) + (uint64_t)min.equilibration;
+    const int64_t settling = min.equilibration < sampling->state->parameters->equilibration
+                                 ? min.equilibration
+                                 : sampling->state->parameters->equilibration;
+    const uint64_t first = replicas_plan_sweeps(&min) + (uint64_t)settling;
     const bool farther = sampling->before[TARGET_RDF].count > 0 &&
                          mf_inversion_assessment_noises(assessment, targets, assessment->distance) >
                              mf_inversion_assessment_noises(assessment, targets, sampling->before);

@@ -23,15 +23,25 @@ static enum status check_shares(const struct inversion_state *state,
                                 const struct topology *topology, int64_t wanted,
                                 const struct scaled_system *system) {
     const struct composition *composition = &state->problem->scene.composition;
+    if (!mf_scaled_system_is_alike(composition, topology))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "method.particles: g(r) counts pairs within molecules, which in a mixture go by the "
+            "numbers of the scene: leave it out, or \"exclude\" these pairs");
     if (system->distortion <= max_distortion)
         return STATUS_OK;
+    const int64_t next = mf_scaled_system_min(composition, topology, wanted, max_distortion);
+    if (next < wanted)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "method.particles: %lld change the share of a type or of a kind of "
+                              "molecules, as some are few: leave it out",
+                              (long long)wanted);
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "method.particles: %lld change the share of %s by %.0f %%; %lld are the next that keep all "
         "shares",
         (long long)wanted, topology ? "a type or of a kind of molecules" : "a type",
-        100 * system->distortion,
-        (long long)mf_scaled_system_min(composition, topology, wanted, max_distortion));
+        100 * system->distortion, (long long)next);
 }
 
 /// The smallest number to ask for that makes so many beads, no more than the scene has: molecules

@@ -59,11 +59,27 @@ struct scaled_system mf_scaled_system(const struct composition *composition,
     return scaled;
 }
 
+bool mf_scaled_system_is_alike(const struct composition *composition,
+                               const struct topology *topology) {
+    const struct composition single = find_single(composition, topology);
+    if (topology == NULL || (topology->kinds == 1 && mf_composition_particles(&single) == 0))
+        return true;
+    for (int pair = 0; pair < mf_composition_pairs(composition); pair++) {
+        int type[2];
+        mf_composition_pair_types(composition, pair, type);
+        if (mf_topology_intramolecular_pairs(topology, type, false) >
+            mf_topology_intramolecular_pairs(topology, type, true))
+            return false;
+    }
+    return true;
+}
+
 int64_t mf_scaled_system_min(const struct composition *composition, const struct topology *topology,
                              int64_t particles, double distortion) {
+    enum { TRIALS = 100000 };
     const int64_t all = mf_composition_particles(composition);
     // A multiple of the whole is exact, unless a kind has one molecule.
-    for (int64_t more = 0; more <= all; more++)
+    for (int64_t more = 0; more <= all && more < TRIALS; more++)
         if (mf_scaled_system(composition, topology, particles + more).distortion <= distortion)
             return particles + more;
     return all;

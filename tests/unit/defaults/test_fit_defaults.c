@@ -245,14 +245,17 @@ static void test_fit_defaults_cut_the_steps_of_pairs_for_bonds(void **state) {
 }
 
 /// Molecules are sampled in a smaller system where that halves the scene: not for the integrals of
-/// its waves, nor where a kind has one molecule, whose share any other number changes.
+/// its waves, nor in mixtures, nor where they might meet their own images there.
 static void test_fit_defaults_sample_molecules_in_half_of_the_scene_or_all(void **state) {
     static const struct {
-        const char *target, *others;
+        const char *target;
+        int count, length;
+        const char *others;
         bool smaller;
-    } cases[] = {{"", "", true},
-                 {", \"kirkwood_buff\": {\"value\": -1, \"error\": 0.1}", "", false},
-                 {"",
+    } cases[] = {{"", 2000, 2, "", true},
+                 {"", 100, 40, "", false},
+                 {", \"kirkwood_buff\": {\"value\": -1, \"error\": 0.1}", 2000, 2, "", false},
+                 {"", 2000, 2,
                   ", \"one\": {\"count\": 1, \"chain\": {\"type\": \"A\", \"length\": 3, \"bond\": "
                   "\"spring\"}}",
                   false}};
@@ -264,9 +267,9 @@ static void test_fit_defaults_sample_molecules_in_half_of_the_scene_or_all(void 
                  "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}%s}, "
                  "\"scene\": {\"box\": [24, 24, 24], \"bonds\": {\"spring\": {\"law\": "
                  "\"harmonic\", \"k\": 100, \"length\": 0.5}}, \"molecules\": {\"dimer\": "
-                 "{\"count\": 2000, \"chain\": {\"type\": \"A\", \"length\": 2, \"bond\": "
+                 "{\"count\": %d, \"chain\": {\"type\": \"A\", \"length\": %d, \"bond\": "
                  "\"spring\"}}%s}}}",
-                 cases[k].target, cases[k].others);
+                 cases[k].target, cases[k].count, cases[k].length, cases[k].others);
         assert_ok(read_run(state, &fit, "run.json", text));
         const int64_t particles =
             ((const struct inversion_parameters *)fit.method_parameters)->particles;

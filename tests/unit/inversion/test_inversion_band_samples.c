@@ -194,9 +194,7 @@ static void test_pooled_samples_scatter_by_less(void **unused) {
     make(&made);
     draw(&made, rng, 0.5);
     const double alone = add(&made);
-    const struct inverse_doubling found = mf_inversion_band_noise(&made.state);
-    const double noise = found.noise;
-    assert_true(found.wanted < noise); // each replica has seen its slow number once
+    const double noise = mf_inversion_band_noise(&made.state).noise;
     assert_close_relative(noise, made.state.open.samples / made.state.open.rest, 1e-9);
     made.state.pool.samples = 2 * COUNT;
     assert_close(add(&made), alone / 2, 1e-9);
@@ -207,10 +205,31 @@ static void test_pooled_samples_scatter_by_less(void **unused) {
     gsl_rng_free(rng);
 }
 
+/// Each replica has seen its slow number once: more samples are wanted as long as these leave half
+/// of what all else does.
+static void test_what_each_replica_has_seen_once_wants_more_samples(void **unused) {
+    static const double ratio[] = {0.8, 0.4};
+    (void)unused;
+    struct made made;
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made);
+    draw(&made, rng, 5);
+    add(&made);
+    for (size_t k = 0; k < 2; k++) {
+        made.state.open.rest *= mf_inversion_band_noise(&made.state).noise / ratio[k];
+        const struct inverse_doubling found = mf_inversion_band_noise(&made.state);
+        assert_close_relative(found.noise, ratio[k], 1e-9);
+        assert_true((found.wanted < found.noise) == (ratio[k] > 0.5));
+    }
+    clear(&made);
+    gsl_rng_free(rng);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_band_has_the_scatter_of_slow_samples),
         cmocka_unit_test(test_pooled_samples_scatter_by_less),
+        cmocka_unit_test(test_what_each_replica_has_seen_once_wants_more_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,6 +15,8 @@ enum { BINS = 10, PARTICLES = 100, REPLICAS = 4, MAX_WORDS = 64 };
 struct told {
     struct inverse_progress word[MAX_WORDS];
     int words;
+    double memory;   ///< of the samples before [sweeps]; 0: there were none
+    uint64_t sweeps; ///< of all replicas
 };
 
 static void hear(void *context, const struct inverse_progress *progress) {
@@ -58,10 +60,13 @@ static double observe_with(double target, double precision, double *pressure, do
                                                   .damping = 1,
                                                   .precision = precision,
                                                   .start = INVERSION_FROM_MEAN_FORCE};
-    *told = (struct told){0};
+    *told = (struct told){.memory = told->memory};
     assert_ok(mf_inversion_create(inversion, &mf_imc, &problem, &settings));
+    inversion->state->work.memory = told->memory;
+    inversion->course.progress.from_disorder = !(told->memory > 0);
     assert_ok(mf_inversion_observe(inversion, &(struct inverse_listener){hear, told}));
     const double noise = inversion->assessment.own_noise;
+    told->sweeps = inversion->state->work.sweeps;
     if (pressure)
         *pressure = inversion->state->bulk.pressure;
     mf_inversion_destroy(inversion);
@@ -118,6 +123,22 @@ static void test_doublings_end_with_the_last_that_was_told(void **state) {
     assert_int_equal(told.words, REPLICAS + last->max * (1 + REPLICAS));
 }
 
+/// Replicas that go on with another potential forget the one before: four memories, or the 10
+/// sweeps of the parameters if these are fewer, but never less than one and a half.
+static void test_replicas_forget_for_as_long_as_they_remember(void **state) {
+    static const struct {
+        double memory;
+        uint64_t equilibration;
+    } cases[] = {{0, 20}, {1, 4}, {5, 10}, {8, 12}, {100, 150}};
+    enum { SAMPLED = 8 * 8 };
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct told told = {.memory = cases[k].memory};
+        observe(1, 1, &told);
+        assert_int_equal(told.sweeps, REPLICAS * (SAMPLED + cases[k].equilibration));
+    }
+}
+
 /// The innermost bin has so few pairs that its noise, over all bins, is more than a third of what g
 /// is off; the others tell that it is off, and by how much.
 static void test_bins_with_few_pairs_do_not_decide(void **state) {
@@ -155,6 +176,7 @@ int main(void) {
         cmocka_unit_test(test_no_doubling_is_told_where_the_first_samples_are_enough),
         cmocka_unit_test(test_doublings_tell_a_noise_that_falls_to_what_is_wanted),
         cmocka_unit_test(test_doublings_end_with_the_last_that_was_told),
+        cmocka_unit_test(test_replicas_forget_for_as_long_as_they_remember),
         cmocka_unit_test(test_bins_with_few_pairs_do_not_decide),
         cmocka_unit_test(test_a_pressure_doubles_samples),
     };

@@ -66,6 +66,28 @@ static void test_a_kind_that_changes_its_share_distorts(void **state) {
     mf_topology_clear(&topology);
 }
 
+/// Pairs within molecules are no hindrance of one kind alone, or where none of them is counted.
+static void test_mixtures_whose_molecules_count_their_own_pairs_are_not_alike(void **state) {
+    static const struct {
+        int64_t second, single;
+        int exclude;
+        bool alike;
+    } cases[] = {
+        {0, 0, 1, true}, {0, 5, 1, false}, {4, 0, 1, false}, {0, 5, 2, true}, {4, 5, 2, true}};
+    (void)state;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct topology topology;
+        const struct composition composition = molecules_topology(
+            &topology, molecules_chain(30, aba, 3, BONDED_ANGLE, cases[k].exclude),
+            molecules_chain(cases[k].second, bb, 2, BONDED_BOND, 1), 3,
+            (const int64_t[]){0, 0, cases[k].single});
+        assert_true(mf_scaled_system_is_alike(&composition, &topology) == cases[k].alike);
+        mf_topology_clear(&topology);
+    }
+    assert_true(
+        mf_scaled_system_is_alike(&(struct composition){.types = 2, .count = {3, 4}}, NULL));
+}
+
 /// Each bead of the scaled topology has the type, the molecule and the bonds of its kind.
 static void test_the_topology_is_whole(void **state) {
     (void)state;
@@ -104,6 +126,7 @@ int main(void) {
         cmocka_unit_test(test_single_beads_keep_their_shares),
         cmocka_unit_test(test_molecules_are_scaled_as_a_whole),
         cmocka_unit_test(test_a_kind_that_changes_its_share_distorts),
+        cmocka_unit_test(test_mixtures_whose_molecules_count_their_own_pairs_are_not_alike),
         cmocka_unit_test(test_the_topology_is_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
