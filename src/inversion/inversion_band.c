@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
+#include "inversion/gram.h"
+
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
@@ -51,9 +53,9 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_rows(system, response, NULL);
     mf_imc_solve_prior(system, prior);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1 / birge, response, 0, known);
+    CHECK(mf_gram(1 / birge, response, 0, known));
     gsl_matrix_memcpy(&to.matrix, known);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, &to.matrix);
+    CHECK(mf_gram(unit, prior, 1, &to.matrix));
     // Rounding may leave it not positive: then there is no band.
     if (gsl_linalg_cholesky_decomp1(&to.matrix) != GSL_SUCCESS ||
         gsl_linalg_cholesky_invert(&to.matrix) != GSL_SUCCESS)
@@ -130,7 +132,7 @@ enum status mf_inversion_band_add_prior(const struct inversion *inversion, struc
     CHECK(mf_imc_solve_prior_excess(&system, prior, left));
     gsl_blas_dgemv(CblasTrans, unit, prior, left, 1, asked);
     if (normal)
-        gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1, normal);
+        CHECK(mf_gram(unit, prior, 1, normal));
 done:
     gsl_matrix_free(prior);
     gsl_vector_free(left);
@@ -321,7 +323,7 @@ static enum status find_covariance(struct inversion *inversion, const struct imc
     CHECK(prior && half && middle ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_prior(system, prior);
     gsl_matrix_memcpy(middle, &scatter.matrix);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, unit, prior, 1 / birge, middle);
+    CHECK(mf_gram(unit, prior, 1 / birge, middle));
     gsl_blas_dsymm(CblasLeft, CblasLower, 1, middle, &inverse.matrix, 0, half);
     gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &inverse.matrix, half, 0, &to.matrix);
 done:

@@ -7,6 +7,8 @@
 #include "inversion/method_steps.h"
 #include "observe/kirkwood_buff.h"
 
+#include "inversion/gram.h"
+
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -227,7 +229,7 @@ enum status mf_inversion_equations_without(const struct inversion_equations *equ
     NEW_ARRAY(all.more, known);
     CHECK(filling_allocate(equations, &all));
     CHECK(fill_all(equations, &all));
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1 / birge, all.rows, 0, normal);
+    CHECK(mf_gram(1 / birge, all.rows, 0, normal));
     gsl_blas_dgemv(CblasTrans, 1 / birge, all.rows, all.rhs, 0, asked);
 done:
     filling_free(&all);
@@ -254,7 +256,7 @@ static enum status add_scatter(const struct inversion_state *state, enum inversi
             gsl_matrix_set(t, a, b, 0);
     mf_inversion_noise_find(state, mf_inversion_noise_of_band(state, kind), NULL, factor->data);
     gsl_blas_dtrmm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, factor, t);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, t, 1, &to.matrix);
+    CHECK(mf_gram(1, t, 1, &to.matrix));
 done:
     gsl_matrix_free(t);
     gsl_matrix_free(factor);

@@ -5,6 +5,8 @@
 #include "inversion/inversion_state.h"
 #include "problem/group_kind.h"
 
+#include "inversion/gram.h"
+
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
@@ -112,11 +114,11 @@ static enum status fill_allowed(const struct inversion_state *state, gsl_matrix 
     gsl_matrix *half = gsl_matrix_alloc(known, known), *prior = gsl_matrix_alloc(known, known);
     CHECK(rows && half && prior ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_prior(&system, rows);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, rows, 0, prior);
+    CHECK(mf_gram(1, rows, 0, prior));
     gsl_linalg_cholesky_decomp1(prior);
     gsl_matrix_transpose_memcpy(half, &response.matrix);
     gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, prior, half);
-    gsl_blas_dsyrk(CblasLower, CblasTrans, 1, half, 0, allowed);
+    CHECK(mf_gram(1, half, 0, allowed));
 done:
     gsl_matrix_free(rows);
     gsl_matrix_free(half);
