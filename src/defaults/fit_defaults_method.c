@@ -134,9 +134,12 @@ static double choose_particles(const struct fit_choice *c) {
     const double wanted = ceil(fmax(min, share * c->count));
     if (joined && (!may_be_fewer(c) || wanted > worth_it * c->count))
         return 0;
-    const double particles = (double)mf_scaled_system_min(
-        c->rdf->composition, joined ? &c->fit->scene.molecules.molecules.topology : NULL,
-        (int64_t)wanted, distortion);
+    const struct topology *topology = joined ? &c->fit->scene.molecules.molecules.topology : NULL;
+    const int64_t least =
+        mf_scaled_system_min(c->rdf->composition, topology, (int64_t)wanted, distortion);
+    const struct scaled_system system = mf_scaled_system(c->rdf->composition, topology, least);
+    const double particles =
+        joined ? (double)mf_composition_particles(&system.composition) : (double)least;
     // One molecule of a kind has its share of hardly any other number.
     return joined && particles > worth_it * c->count ? 0 : particles;
 }
