@@ -258,9 +258,9 @@ class Curves:
         """
         return self.table.to_pandas()
 
-    def _named(self, part: object) -> object:
+    def _named(self, part: str) -> str:
         """The name of a pair as the tables have it, of "B-A", too."""
-        words = part.split("-") if isinstance(part, str) else []
+        words = part.split("-")
         turned = ("-".join(words[n:] + words[:n]) for n in range(1, len(words)))
         return part if part in self._tables else next(
             (name for name in turned if name in self._tables), part)
@@ -276,7 +276,9 @@ class Curves:
         return iter(self._tables)
 
     def __contains__(self, part: object) -> bool:
-        return self._named(part) in self._tables or (len(self._tables) == 1 and part in self.table)
+        if isinstance(part, str) and self._named(part) in self._tables:
+            return True
+        return len(self._tables) == 1 and part in self.table
 
     def keys(self) -> KeysView[str]:
         """Names of the pairs of types.

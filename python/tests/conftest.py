@@ -17,7 +17,7 @@ import mesofit  # noqa: E402
 PROGRAM = os.environ.get("MESOFIT", str(ROOT / "build" / "mesofit"))
 
 SCENE = {
-    "box": [4, 4, 4], "particles": {"count": 190}, "temperature": 1,
+    "box": [4, 4, 4], "particles": {"count": 190}, "temperature": 1, "time_step": 0.01,
     "conservative": {"law": "soft-repulsion", "a": 25},
     "dissipative": {"law": "power", "sigma": 3},
     "measure": {"equilibration": 200, "samples": 40, "every": 5},

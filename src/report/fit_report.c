@@ -269,15 +269,20 @@ static void print_distances(struct progress *to, const struct fit_file *fit,
             print_distance(to, fit, v, kind);
 }
 
-static void print_diffusion(struct progress *to, const struct units *units,
+/// Friction that was chosen only holds the temperature: what moves by it is no result.
+static void print_diffusion(struct progress *to, const struct fit_file *fit,
                             const struct verification *v) {
+    const struct units *units = &fit->scene.units;
     const double time = mf_units_factor(units, "tau");
     char diffusion[UNITS_MEASURED_SIZE], times[UNITS_NAME_SIZE];
     mf_units_measured(units, "lambda^2/tau", *v->observed.value[TARGET_DIFFUSION],
                       *v->observed.error[TARGET_DIFFUSION], diffusion);
-    mf_progress_print(to, "D = %s, the slope of the MSD from %.4g to %.4g %s", diffusion,
+    mf_progress_print(to, "D = %s, the slope of the MSD from %.4g to %.4g %s%s", diffusion,
                       time * v->diffusion_begin, time * v->diffusion_end,
-                      mf_units_name(units, "tau", times));
+                      mf_units_name(units, "tau", times),
+                      fit->choices.thermostat ? ": by the friction that was chosen to hold the "
+                                                "temperature, and no result"
+                                              : "");
 }
 
 /// "G of A-B = -0.31(2) lambda^3, target -0.30(1)".
@@ -371,12 +376,11 @@ static void print_step(struct progress *to, const struct fit_file *fit,
 /// What was found of a state, or of the only one.
 static void print_state(struct progress *to, const struct fit_file *fit,
                         const struct verification *v) {
-    const struct units *units = &fit->scene.units;
     if (fit->name[0])
         mf_progress_print(to, "state \"%s\":", fit->name);
     print_distances(to, fit, v);
     if (targets_ask(&fit->problem.compared, TARGET_DIFFUSION))
-        print_diffusion(to, units, v);
+        print_diffusion(to, fit, v);
     print_integrals(to, fit, v);
     print_thermodynamics(to, fit, v);
     print_step(to, fit, v);

@@ -48,6 +48,19 @@ static void test_fit_target_is_the_fit_of_the_run_file_in_the_folder(void **stat
     results_assert_same("a", "c", tables);
 }
 
+/// Friction that is chosen holds the temperature: D of it is printed as no result.
+static void test_fit_target_prints_no_motion_by_chosen_friction_as_a_result(void **state) {
+    make_target(*state, shortest);
+    small_inputs_write(
+        *state, "target/target.json", shortest, "81}},",
+        "81}, \"diffusion\": {\"value\": 0.2, \"window\": 0.3, \"fitted\": \"no\"}},");
+    RUN_PROGRAM(&result, "fit", "target/target.json", "-o", "moves", "--threads", "2");
+    assert_contains(result.err, "chosen: friction omega = ");
+    assert_contains(result.err, "D = ");
+    assert_contains(result.err, "the friction that was chosen to hold the temperature, and no "
+                                "result");
+}
+
 static void test_fit_target_takes_density_and_temperature_where_there_is_g_alone(void **state) {
     make_target(*state, "");
     RUN_PROGRAM(&result, "fit", "--target", "target", "-o", "out", "--quiet");
@@ -112,6 +125,7 @@ static void test_fit_target_tells_what_goes_together(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_fit_target_is_the_fit_of_the_run_file_in_the_folder),
+        TEST_WITHOUT_FIGURES(test_fit_target_prints_no_motion_by_chosen_friction_as_a_result),
         TEST_WITHOUT_FIGURES(test_fit_target_takes_density_and_temperature_where_there_is_g_alone),
         TEST_WITHOUT_FIGURES(test_fit_target_takes_what_its_file_lacks),
         TEST_WITHOUT_FIGURES(test_fit_target_tells_what_goes_together),
