@@ -68,3 +68,27 @@ bool mf_names_is_reserved(const char *name) {
     }
     return found;
 }
+
+/// Whether the words a and b, of one length, are "A-B" and "B-A".
+static bool is_turned(const char *a, const char *b, size_t length) {
+    for (size_t dash = 1; dash + 1 < length; dash++) {
+        const size_t rest = length - dash - 1;
+        if (a[dash] == '-' && b[rest] == '-' && strncmp(a, b + rest + 1, dash) == 0 &&
+            strncmp(a + dash + 1, b, rest) == 0)
+            return true;
+    }
+    return false;
+}
+
+bool mf_names_are_one_path(const char *a, const char *b) {
+    while (*a && *b) {
+        const size_t length = strcspn(a, ".");
+        if (strcspn(b, ".") != length || (strncmp(a, b, length) != 0 && !is_turned(a, b, length)))
+            return false;
+        a += length;
+        b += length;
+        a += *a == '.';
+        b += *b == '.';
+    }
+    return *a == *b;
+}

@@ -35,6 +35,10 @@ bool mf_names_is_plain(const char *name, const char *marks, size_t size);
 /// What another program calls so, as such a name: what is no letter, digit or mark becomes "_".
 void mf_names_adapt(const char *from, const char *marks, char *name, size_t size);
 
+/// Whether two paths of keys are the same but for a pair of types in the other order:
+/// "conservative.B-A.epsilon" and "conservative.A-B.epsilon".
+bool mf_names_are_one_path(const char *a, const char *b);
+
 /// @name Reserved names
 /// Tables, columns and numbers of a result have words before and after the names of types, kinds,
 /// groups and modes: potential_A-B_history.tsv, rdf_now_A-B.tsv, "backbone_error". A name that has

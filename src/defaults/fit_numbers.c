@@ -2,6 +2,7 @@
 #include "defaults/fit_unknowns.h"
 
 #include "base/memory.h"
+#include "base/names.h"
 #include "base/nearest.h"
 
 #include <math.h>
@@ -318,10 +319,10 @@ static void check_range(struct json_object *object, const struct field *field,
                       factor * number->start, factor * number->minimum, factor * number->maximum);
 }
 
-static void read_one(struct json_object *numbers, const struct entry *entry,
+static void read_one(struct json_object *numbers, const char *path, const struct entry *entry,
                      struct inverse_number *number) {
     const size_t faults = mf_json_fault_count(numbers->document);
-    struct json_object object = mf_json_child(numbers, entry->path, false);
+    struct json_object object = mf_json_child(numbers, path, false);
     struct field fields[NUMBERS_FIELDS];
     mf_numbers_fields_of(entry->field->unit, fields);
     mf_json_fields(&object, fields, number);
@@ -338,9 +339,9 @@ static void read_one(struct json_object *numbers, const struct entry *entry,
 /// That of a path, or NULL.
 static const struct entry *find(const struct entries *entries, const char *path) {
     const struct entry *found = NULL;
-    for (size_t k = 0; k < entries->count; k++)
-        if (strcmp(entries->entry[k].path, path) == 0)
-            found = &entries->entry[k];
+    for (const struct entry *one = entries->entry; one < entries->entry + entries->count; one++)
+        if (strcmp(one->path, path) == 0 || (!found && mf_names_are_one_path(one->path, path)))
+            found = one;
     return found;
 }
 
@@ -355,7 +356,7 @@ static enum status read_all(struct json_object *numbers, const struct scene *sce
         else if (found->fixed)
             mf_json_fault(numbers, path, "it cannot be found: %s", found->fixed);
         else if (*count < INVERSE_MAX_NUMBERS)
-            read_one(numbers, found, &number[(*count)++]);
+            read_one(numbers, path, found, &number[(*count)++]);
         else
             mf_json_fault(numbers, path, "there are more than %d numbers", INVERSE_MAX_NUMBERS);
         mf_json_has(numbers, path);

@@ -84,11 +84,24 @@ static void test_plain_names_have_letters_digits_and_marks(void **state) {
     assert_false(mf_names_is_plain("\xe4", "_", 9)); // a letter in some locales
 }
 
+static void test_paths_are_one_with_a_pair_in_either_order(void **state) {
+    (void)state;
+    assert_true(mf_names_are_one_path("a.A-B.k", "a.A-B.k"));
+    assert_true(mf_names_are_one_path("a.A-B.k", "a.B-A.k"));
+    assert_true(mf_names_are_one_path("a.Na_1-W.k", "a.W-Na_1.k"));
+    assert_false(mf_names_are_one_path("a.A-B.k", "a.B-B.k"));
+    assert_false(mf_names_are_one_path("a.A-B.k", "a.B-A.n"));
+    assert_false(mf_names_are_one_path("a.A-B.k", "a.B-A"));
+    assert_false(mf_names_are_one_path("a.A-B", "a.AB-"));
+    assert_false(mf_names_are_one_path("a", "b"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_names_that_tables_have_are_found),
         cmocka_unit_test(test_plain_names_have_letters_digits_and_marks),
         cmocka_unit_test(test_names_find_gives_the_record_or_null),
+        cmocka_unit_test(test_paths_are_one_with_a_pair_in_either_order),
         cmocka_unit_test(test_names_collect_gives_all_when_there_are_many),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
