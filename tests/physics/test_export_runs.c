@@ -174,14 +174,15 @@ static void compare_measured(const char *name, double bound) {
     assert_true(sqrt(squares / shells) < bound);
 }
 
-/// Of a hundred frames; without the pairs g is 0.3 apart.
+/// Noise is 0.02 to 0.03, and of a third as many frames it was 0.03 to 0.06: OpenMM's have no seed.
+/// Without the pairs g is 0.3 apart.
 static void test_mixture_of_openmm_is_ours(void **state) {
     if (system("/usr/bin/python3 -c 'import openmm' 2>/dev/null") != 0) {
         print_message("skipped: OpenMM is not installed\n");
         skip();
     }
     export_in_nm(*state, mixture, "\"seed\": 5", "\"seed\": 6", "openmm");
-    if (system("cd openmm && PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 run.py 600 >run.out 2>&1"))
+    if (system("cd openmm && PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 run.py 1800 >run.out 2>&1"))
         fail_msg("OpenMM failed: %s", temporary_folder_read("openmm/run.out"));
     RUN_PROGRAM(&result, "measure", "openmm/trajectory.xyz", "--temperature", "300", "--range", "1",
                 "--bins", "100", "-o", "measured");
