@@ -39,11 +39,9 @@ static const char *not_a_number(const struct field *field) {
     case FIELD_TEXT:
     case FIELD_FILE:
         return "it is a text, not a number";
-    case FIELD_CHOICE:
-    case FIELD_CHOICES:
+    default: // of choices
         return "it is a choice, not a number";
     }
-    return NULL;
 }
 
 /// Add the fields of a table, whose numbers are counted from `base` and at `offset` in their place.
@@ -353,6 +351,8 @@ static enum status read_all(struct json_object *numbers, const struct scene *sce
         const struct entry *const found = find(entries, path);
         if (found == NULL)
             TRY(fault_unknown(numbers, path, entries, scene));
+        else if (strcmp(found->path, path) != 0 && mf_json_has(numbers, found->path))
+            mf_json_fault(numbers, path, "it stands there as \"%s\", too", found->path);
         else if (found->fixed)
             mf_json_fault(numbers, path, "it cannot be found: %s", found->fixed);
         else if (*count < INVERSE_MAX_NUMBERS)

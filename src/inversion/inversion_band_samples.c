@@ -201,6 +201,7 @@ struct inverse_doubling mf_inversion_band_noise(const struct inversion_state *st
     const double noise = sqrt(scatter.found * now / (now + state->pool.samples));
     const double ratio = noise / state->open.rest;
     const bool seldom = is_seen_too_seldom(state, noise, now / fmax(1, scatter.slowness));
+    const double doubled = ratio / sqrt(2); // by twice the samples
     return (struct inverse_doubling){
-        .noise = ratio, .wanted = seldom ? fmin(1, 0.7 * ratio) : 1, .unit = ""};
+        .noise = ratio, .wanted = seldom ? fmin(1, doubled) : 1, .unit = ""};
 }

@@ -248,6 +248,17 @@ static void test_explain_tells_of_numbers_of_a_pair_type_and_of_the_integrator(v
     // The scene's is out of the range: the middle.
     assert_contains(result.out,
                     "dynamics.lambda is to be found from 0.1 to 0.4, beginning with 0.25.");
+    // The pair in the other order, and both.
+    small_inputs_change(*state, "run.json", "conservative.A-B.a", "conservative.B-A.a");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.out, "conservative.A-B.a is to be found from 1 to 80");
+    small_inputs_change(*state, "run.json", "\"conservative.B-A.a\":",
+                        "\"conservative.A-B.a\": {\"minimum\": 1, \"maximum\": 8}, "
+                        "\"conservative.B-A.a\":");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "it stands there as \"conservative.A-B.a\", too");
 }
 
 static void test_fit_refuses_numbers_that_cannot_be_found(void **state) {

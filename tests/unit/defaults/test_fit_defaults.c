@@ -278,6 +278,22 @@ static void test_fit_defaults_sample_molecules_in_half_of_the_scene_or_all(void 
     }
 }
 
+/// A long box is sampled at a size whose short edges hold the range twice.
+static void test_fit_defaults_sample_a_long_box_that_holds_the_range(void **state) {
+    struct fit_file fit;
+    write_target(state, 0.002);
+    assert_ok(read_run(state, &fit, "run.json",
+                       "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}, \"scene\": {\"box\": "
+                       "[150, 14, 14], \"particles\": {\"count\": 8500}}}"));
+    const double particles =
+        (double)((const struct inversion_parameters *)fit.method_parameters)->particles;
+    const double edge = 14 * cbrt(particles / 8500);
+    const double range = mf_rdf_bins_range(&fit.problem.targets.bins);
+    print_message("%g beads, short edge %g, range %g\n", particles, edge, range);
+    assert_true(edge >= 2 * range);
+    mf_fit_file_clear(&fit);
+}
+
 /// Lengths of a bond of k = 3000 in bins from a third to all of their standard deviation, 0.018,
 /// which each have the mean of a normal density: its frequency is found within an eighth.
 static void test_fit_defaults_know_a_bond_by_coarse_bins(void **state) {
@@ -548,6 +564,7 @@ int main(void) {
         IN_FOLDER(test_fit_defaults_choose_no_count_beside_a_file_of_places),
         IN_FOLDER(test_fit_defaults_cut_the_steps_of_pairs_for_bonds),
         IN_FOLDER(test_fit_defaults_sample_molecules_in_half_of_the_scene_or_all),
+        IN_FOLDER(test_fit_defaults_sample_a_long_box_that_holds_the_range),
         IN_FOLDER(test_fit_defaults_know_a_bond_by_coarse_bins),
         IN_FOLDER(test_fit_defaults_choose_time_steps_by_the_friction_without_velocities),
         IN_FOLDER(test_fit_defaults_choose_no_friction_where_that_across_pairs_is_found),

@@ -124,7 +124,8 @@ static void test_doublings_end_with_the_last_that_was_told(void **state) {
 }
 
 /// Replicas that go on with another potential forget the one before: four memories, or the 10
-/// sweeps of the parameters if these are fewer, but never less than one and a half.
+/// sweeps of the parameters if these are fewer, but never less than one and a half; from disorder
+/// twice the parameters.
 static void test_replicas_forget_for_as_long_as_they_remember(void **state) {
     static const struct {
         double memory;
