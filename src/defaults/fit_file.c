@@ -284,8 +284,8 @@ void mf_fit_base_check(struct fit_unknown *unknown, struct json_object *object) 
         mf_json_fault(object, "base", "\"start\" needs a start");
 }
 
-/// The hypernetted chain's. Of a target that ends before its oscillations do it is far off and puts
-/// the liquid under tension; and some targets have none. There `auto` takes −k_B T ln g.
+/// The hypernetted chain's. Where it puts the liquid under tension it is far off, and some targets
+/// have none. There `auto` takes −k_B T ln g.
 static enum status fill_hnc(const struct inverse_problem *problem, const struct unknowns *unknowns,
                             bool even_under_tension, double *curve) {
     double pressure;

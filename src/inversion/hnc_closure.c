@@ -11,10 +11,6 @@
 /// has died away well before.
 static const double ranges = 8;
 
-/// S(q) counts as no less in h − c. Measured: with 0.01 the noise of a soft fluid's g, S(0) = 0.06,
-/// made a potential so wrong (g off by 0.9) that no inversion came back from it.
-static const double min_structure = 0.1;
-
 /// Transform at q of `values` − `zero` in the bins and of `core` below the first.
 static double transform(const struct rdf_bins *bins, const double *values, double zero, double core,
                         double q) {
@@ -103,28 +99,6 @@ static void diagonalise(struct wave *wave, const double *g, double q) {
     gsl_eigen_symmv(wave->matrix, wave->values, wave->vectors, wave->work);
 }
 
-/// result = (M − 1)² M⁻¹ of what was diagonalised, less the result before.
-static void take_from_indirect(struct wave *wave) {
-    rotate(wave, false);
-    for (size_t i = 0; i < wave->values->size; i++) {
-        const double s = gsl_vector_get(wave->values, i);
-        for (size_t j = 0; j < wave->values->size; j++) {
-            double *value = gsl_matrix_ptr(wave->result, i, j);
-            *value = (i == j ? (s - 1) * (s - 1) / fmax(s, min_structure) : 0) - *value;
-        }
-    }
-    rotate(wave, true);
-}
-
-/// h − c.
-static void find_indirect(struct wave *wave, const double *g, double q) {
-    gsl_matrix_set_zero(wave->result);
-    diagonalise(wave, NULL, q);
-    take_from_indirect(wave);
-    diagonalise(wave, g, q);
-    take_from_indirect(wave);
-}
-
 /// Its change.
 static void find_slope(struct wave *wave, const double *g, const double *difference, double ridge,
                        double q) {
@@ -164,9 +138,8 @@ static size_t count_waves(const struct rdf_bins *bins, double *spacing) {
     return (size_t)(M_PI / bins->width / *spacing);
 }
 
-/// h − c of g, or with a `difference` of g its change.
-static enum status solve(const struct hnc_liquid *liquid, const double *g, const double *difference,
-                         double ridge, double *indirect) {
+enum status mf_hnc_closure_slope(const struct hnc_liquid *liquid, const double *g,
+                                 const double *difference, double ridge, double *indirect) {
     enum status status = STATUS_OK;
     struct wave wave = {0};
     double spacing;
@@ -179,24 +152,12 @@ static enum status solve(const struct hnc_liquid *liquid, const double *g, const
         indirect[k] = 0;
     for (size_t n = 1; n <= waves; n++) {
         const double q = (double)n * spacing;
-        if (difference)
-            find_slope(&wave, g, difference, ridge, q);
-        else
-            find_indirect(&wave, g, q);
+        find_slope(&wave, g, difference, ridge, q);
         add_wave(&wave, q, spacing, indirect);
     }
 done:
     wave_clear(&wave);
     return status;
-}
-
-enum status mf_hnc_closure(const struct hnc_liquid *liquid, const double *g, double *indirect) {
-    return solve(liquid, g, NULL, 0, indirect);
-}
-
-enum status mf_hnc_closure_slope(const struct hnc_liquid *liquid, const double *g,
-                                 const double *difference, double ridge, double *indirect) {
-    return solve(liquid, g, difference, ridge, indirect);
 }
 
 enum status mf_hnc_closure_min_intramolecular(const struct hnc_liquid *liquid, double *min) {

@@ -8,12 +8,10 @@
 /// are asked for, pressures and integrals. The course (inversion/inversion_course.h) keeps the
 /// potential or goes back, and steps on.
 ///
-/// It starts from the hypernetted-chain inversion (mf_hnc_closure): for water the error of g is
-/// then a quarter of that of −k_B T ln g. Where that is far off and puts the liquid under tension,
-/// or the first step from there makes it worse, as with targets that end before their oscillations
-/// do, it starts again from −k_B T ln g. Replicas begin from disorder, and again after a potential
-/// that made it worse: a poor one freezes a liquid or makes it cavitate, and what is left of that
-/// would be taken for the next potential's structure.
+/// It starts from the hypernetted-chain inversion (mf_hnc_closure), with g continued beyond its
+/// range; where samples of that do not settle, from −k_B T ln g. Replicas begin from disorder, and
+/// again after a potential that made it worse: a poor one freezes a liquid or makes it cavitate,
+/// and what is left of that would be taken for the next potential's structure.
 ///
 /// Several states, at other temperatures, densities, compositions, share one set of potentials.
 /// Near the targets, and of pairs alone always, the step is that of the equations of all. With
@@ -168,19 +166,12 @@ void mf_inversion_start_try(struct inversion *inversion);
 /// Which start the fit has gone on from. @param[in] kept  whether the last potential is
 enum inverse_start mf_inversion_start_taken(const struct inversion *inversion, bool kept);
 
-/// Whether there is another start to be tried: the first was the hypernetted chain's, a moment ago.
+/// Whether there is another start to be tried: the first is the hypernetted chain's.
 bool mf_inversion_start_has_other(const struct inversion *inversion,
                                   const struct inversion_state *state);
 
-/// Whether samples of the hypernetted chain's start are far off under tension, so that it freezes,
-/// or tears.
-/// @param[in] assessment  the state's, or that of all
-bool mf_inversion_start_is_under_tension(const struct inversion_state *state,
-                                         const struct inversion_assessment *assessment);
-
-/// Whether the start was the hypernetted chain's and leads nowhere, after an iteration whose
-/// potential was kept or not.
-bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept);
+/// Whether the start was the hypernetted chain's, and samples of it are of no use.
+bool mf_inversion_start_is_poor(const struct inversion *inversion);
 
 /// Fill phi with −k_B T ln g. As mf_inversion_start.
 enum status mf_inversion_start_again(struct inversion_state *state, double *phi) MUST_USE;

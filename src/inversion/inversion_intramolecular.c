@@ -9,6 +9,10 @@
 /// of the truth but in the core; 0 of hexane in three beads, where −k_B T ln g was nearer.
 static const double independent = 0.3;
 
+/// g as a whole is known within this, as counts of N or N − 1 particles make a per mille. Measured:
+/// of ten liquids the start is as near to the law with this as with 0, farther with ten times it.
+static const double level = 1e-3;
+
 /// Part of the pairs that may be nearer than the first bin, as where a file leaves out the rows of
 /// the core: without bonds Ω is another molecule's.
 static const double max_nearer = 0.01;
@@ -37,7 +41,7 @@ bool mf_inversion_knows_intramolecular(const struct inversion_state *state) {
 
 struct hnc_liquid mf_inversion_liquid(const struct inversion_state *state) {
     return (struct hnc_liquid){&state->problem->targets.bins, &state->box, &state->composition,
-                               state->inside.min > 0 ? state->inside.g : NULL};
+                               state->inside.min > 0 ? state->inside.g : NULL, level};
 }
 
 /// Sample once more, and count; of what is nearer than the first bin add the number.
@@ -61,7 +65,7 @@ static enum status sample(struct inversion_state *state, const struct inverse_li
 static enum status assess(struct inversion_state *state, const double *counts, int rounds,
                           double *min) {
     const struct hnc_liquid liquid = {&state->problem->targets.bins, &state->box,
-                                      &state->composition, state->inside.g};
+                                      &state->composition, state->inside.g, 0};
     for (size_t n = 0; n < state->grid.pair_bins; n++)
         state->inside.g[n] =
             counts[n] / (rounds * (double)state->replicas.count * state->target.ideal[n]);

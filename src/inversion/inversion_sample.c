@@ -164,10 +164,9 @@ static bool has_cost_enough(const struct sampling *sampling, uint64_t first) {
             sampling->waited > (before > least ? before : least));
 }
 
-/// Whether samples that have not settled are given up: they have cost enough; they are those of a
-/// first start under tension, with another start to be tried; or each more takes them farther from
-/// the targets, and they could not be kept, or there is another start. Of several states only all
-/// together are kept or not.
+/// Whether samples that have not settled are given up: they have cost enough, or each more takes
+/// them farther from the targets, and they could not be kept, or there is another start. Of several
+/// states only all together are kept or not.
 static bool is_hopeless(struct sampling *sampling) {
     const struct inversion *inversion = sampling->inversion;
     const struct targets *targets = &sampling->state->problem->targets;
@@ -184,11 +183,9 @@ static bool is_hopeless(struct sampling *sampling) {
     const bool lost =
         other || (inversion->states == 1 && !mf_inversion_is_worth_keeping(inversion, assessment));
     const bool worse = sampling->state->basis.count == 0 && farther && lost;
-    const bool poor = other && inversion->course.progress.iteration == 0 &&
-                      mf_inversion_start_is_under_tension(sampling->state, assessment);
     assessment->unequilibrated.for_long = has_cost_enough(sampling, first);
     memcpy(sampling->before, assessment->distance, sizeof sampling->before);
-    return assessment->unequilibrated.for_long || worse || poor;
+    return assessment->unequilibrated.for_long || worse;
 }
 
 /// Whether samples that were given up do for a step: their replicas only remember, and scatter by

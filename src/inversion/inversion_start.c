@@ -7,14 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/// A start from the hypernetted chain is poor if its error of g is above this share of g* − 1 and
-/// it is under tension, so that it freezes or cavitates. Measured: 0.05 for water and 0.005 for a
-/// Lennard-Jones gas, 0.28 to 0.39, and pressures of −3.4 to −8, for Lennard-Jones liquids, the
-/// targets of which end at the cutoff, before their oscillations do. The error alone does not tell:
-/// that of a soft fluid was 0.17, of −k_B T ln g 0.12, but from there ibi had not converged after
-/// 40 iterations, its ramp being off by 5 k_B T.
-static const double poor = 0.1;
-
 /// Whether the run file gives a start, of a mixture for any of its pair types: the others then
 /// begin with −k_B T ln g.
 static bool has_own(const struct inversion_state *state) {
@@ -193,33 +185,15 @@ enum inverse_start mf_inversion_start_taken(const struct inversion *inversion, b
     return progress->tried ? INVERSE_START_FORCES_NEARER : INVERSE_START_FORCES;
 }
 
-/// rms of g* − 1.
-static double find_structure(const struct inversion_state *state) {
-    double sum = 0;
-    for (size_t n = 0; n < state->grid.pair_bins; n++)
-        sum += pow(mf_inversion_target_g(state, n) - 1, 2);
-    return sqrt(sum / (double)state->grid.pair_bins);
-}
-
 bool mf_inversion_start_has_other(const struct inversion *inversion,
                                   const struct inversion_state *state) {
     const struct inversion_progress *progress = &inversion->course.progress;
-    return is_from_hnc(state) && !progress->second_start && progress->iteration <= 1;
+    return is_from_hnc(state) && !progress->second_start && progress->iteration == 0;
 }
 
-bool mf_inversion_start_is_under_tension(const struct inversion_state *state,
-                                         const struct inversion_assessment *assessment) {
-    return assessment->distance[TARGET_RDF].rms > poor * find_structure(state) &&
-           state->bulk.pressure < 0;
-}
-
-bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
-    const struct inversion_state *first = inversion->state;
-    if (!mf_inversion_start_has_other(inversion, first))
-        return false;
-    if (inversion->course.progress.iteration == 1 || inversion->assessment.useless)
-        return !kept;
-    return mf_inversion_start_is_under_tension(first, &inversion->assessment);
+bool mf_inversion_start_is_poor(const struct inversion *inversion) {
+    return inversion->assessment.useless &&
+           mf_inversion_start_has_other(inversion, inversion->state);
 }
 
 enum status mf_inversion_start_again(struct inversion_state *state, double *phi) {

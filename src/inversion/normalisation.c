@@ -105,7 +105,7 @@ static enum status fill_cells(struct work *work, const struct rdf_bins *bins, co
     const size_t join = (bins->count - 1) / MAX_CELLS + 1;
     const size_t core = (size_t)ceil(bins->low / (bins->width * (double)join) - 1e-6);
     work->cells = core + (bins->count - 1) / join + 1;
-    const double density = (double)mf_composition_particles(composition) / mf_box_volume(box);
+    const struct composition all = {.types = 1, .count = {mf_composition_particles(composition)}};
     double *edge = NULL;
     NEW_ARRAY(edge, work->cells + 1);
     NEW_ARRAY(work->g, work->cells);
@@ -120,7 +120,7 @@ static enum status fill_cells(struct work *work, const struct rdf_bins *bins, co
                   g, error);
     }
     edge[work->cells] = mf_rdf_bins_range(bins);
-    CHECK(mf_ornstein_zernike_init(&work->oz, edge, work->cells, density));
+    CHECK(mf_ornstein_zernike_init(&work->oz, edge, work->cells, &all, mf_box_volume(box)));
 done:
     mf_memory_free(edge);
     return status;
@@ -132,7 +132,7 @@ static double expect_compressibility(const struct work *work) {
     while (k + 1 < work->cells && work->g[k] < core_end)
         k++;
     const double d = work->oz.edge[k];
-    const double eta = fmin(0.5, 3.14159265358979323846 / 6 * work->oz.density * d * d * d);
+    const double eta = fmin(0.5, 3.14159265358979323846 / 6 * work->oz.density[0] * d * d * d);
     if (k == 0 || work->g[0] > 0.01)
         return 0;
     return pow(1 - eta, 4) / (pow(1 + 2 * eta, 2) + pow(eta, 3) * (eta - 4));

@@ -7,21 +7,24 @@
 #include "shared/is_close.h"
 #include "shared/testing.h"
 
+#include <gsl/gsl_errno.h>
 #include <math.h>
 
-enum { BINS = 250, PAIRS = 3 };
+enum { BINS = 130, PAIRS = 3 };
 
 static const double pi = 3.14159265358979323846;
 
-static const struct rdf_bins bins = {0, 0.02, BINS};
-static const struct box box = {.dimensions = 3, .length = {10, 10, 10}};
+static const struct rdf_bins bins = {0, 0.05, BINS};
+static const struct box box = {.dimensions = 3, .length = {1e4, 1e4, 1e4}};
 
 /// Densities of 0.3 and 0.7, and of 0.25 and 0.9.
-static const struct composition thirds = {.types = 2, .count = {300, 700}, .name = {"A", "B"}};
-static const struct composition unequal = {.types = 2, .count = {250, 900}, .name = {"A", "B"}};
+static const struct composition thirds = {
+    .types = 2, .count = {300000000000, 700000000000}, .name = {"A", "B"}};
+static const struct composition unequal = {
+    .types = 2, .count = {250000000000, 900000000000}, .name = {"A", "B"}};
 
-static const struct hnc_liquid of_thirds = {&bins, &box, &thirds, NULL};
-static const struct hnc_liquid of_unequal = {&bins, &box, &unequal, NULL};
+static const struct hnc_liquid of_thirds = {&bins, &box, &thirds, NULL, 0};
+static const struct hnc_liquid of_unequal = {&bins, &box, &unequal, NULL, 0};
 
 /// h = −A exp(−(r/w)²) of A-A, A-B and B-B; the eigenvalues of S(0) are 0.43 and 0.92.
 static const double amplitude[PAIRS] = {0.12, 0.05, 0.08}, width[PAIRS] = {0.9, 1, 1.1};
@@ -35,7 +38,7 @@ static void make_g(double scale, double *g) {
 
 static void test_hnc_closure_of_two_types_that_are_alike_is_that_of_one(void **state) {
     (void)state;
-    const struct composition one = mf_composition_of_one(1000);
+    const struct composition one = mf_composition_of_one(1000000000000);
     double g[PAIRS * BINS], indirect[PAIRS * BINS], alone[BINS], slope[PAIRS * BINS], other[BINS];
     double difference[PAIRS * BINS];
     for (size_t n = 0; n < PAIRS * BINS; n++) {
@@ -43,14 +46,14 @@ static void test_hnc_closure_of_two_types_that_are_alike_is_that_of_one(void **s
         g[n] = 1 - 0.1 * exp(-r * r) * cos(3 * r);
         difference[n] = 0.01 * exp(-r * r) * sin(r);
     }
-    assert_ok(mf_hnc_closure(&(struct hnc_liquid){&bins, &box, &one, NULL}, g, alone));
+    assert_ok(mf_hnc_closure(&(struct hnc_liquid){&bins, &box, &one, NULL, 0}, g, alone));
     assert_ok(mf_hnc_closure(&of_thirds, g, indirect));
-    assert_ok(mf_hnc_closure_slope(&(struct hnc_liquid){&bins, &box, &one, NULL}, g, difference,
+    assert_ok(mf_hnc_closure_slope(&(struct hnc_liquid){&bins, &box, &one, NULL, 0}, g, difference,
                                    0.3, other));
     assert_ok(mf_hnc_closure_slope(&of_thirds, g, difference, 0.3, slope));
     assert_true(fabs(alone[0]) > 1e-3);
     for (size_t n = 0; n < PAIRS * BINS; n++) {
-        assert_close(indirect[n], alone[n % BINS], 1e-13);
+        assert_close(indirect[n], alone[n % BINS], 1e-10);
         // The ridge changes what is between the types, S = 1, but the difference has no part there.
         assert_close(slope[n], other[n % BINS], 1e-13);
     }
@@ -62,7 +65,7 @@ static double indirect_at(double q, int pair) {
     for (int p = 0; p < PAIRS; p++)
         h[p] = -amplitude[p] * pow(pi * width[p] * width[p], 1.5) *
                exp(-0.25 * q * q * width[p] * width[p]);
-    const double a = (double)unequal.count[0] / 1000, b = (double)unequal.count[1] / 1000;
+    const double a = (double)unequal.count[0] / 1e12, b = (double)unequal.count[1] / 1e12;
     const double square = h[0] * h[2] - h[1] * h[1];
     const double determinant = 1 + a * h[0] + b * h[2] + a * b * square;
     const double c[PAIRS] = {(h[0] + b * square) / determinant, h[1] / determinant,
@@ -82,8 +85,8 @@ static double indirect_of(double r, int pair) {
     return sum * end / STEPS / 3 / (2 * pi * pi);
 }
 
-/// Of h as constant pieces: h'' width²/24. Measured 1.5e-6 of 0.025.
-static const double discretisation = 5e-6;
+/// Of h as constant pieces: h'' width²/24. Measured 9e-6 of 0.025.
+static const double discretisation = 2e-5;
 
 static void test_hnc_closure_is_the_inverse_by_hand_when_h_are_gaussians(void **state) {
     (void)state;
@@ -101,7 +104,7 @@ static void test_hnc_closure_is_the_inverse_by_hand_when_h_are_gaussians(void **
 
 /// Change of h of one pair type alone at a time.
 static void check_slope(size_t pair) {
-    static const double small = 1e-4;
+    static const double small = 1e-4, cells = 5e-3; // means of cells, not values at their centres
     double g[PAIRS * BINS], above[PAIRS * BINS], below[PAIRS * BINS], more[PAIRS * BINS],
         less[PAIRS * BINS], difference[PAIRS * BINS], slope[PAIRS * BINS], largest = 0;
     make_g(1, g);
@@ -117,7 +120,7 @@ static void check_slope(size_t pair) {
     assert_ok(mf_hnc_closure_slope(&of_unequal, g, difference, 0, slope));
     for (size_t n = 0; n < PAIRS * BINS; n++) {
         largest = fmax(largest, fabs(slope[n]));
-        assert_close(slope[n], more[n] - less[n], small * small * 0.1);
+        assert_close(slope[n], more[n] - less[n], small * cells);
     }
     assert_true(largest > 0.1 * small);
 }
@@ -134,10 +137,11 @@ static void test_hnc_closure_stays_finite_when_a_mixture_has_no_structure_factor
     make_g(4, g);
     assert_ok(mf_hnc_closure(&of_unequal, g, indirect));
     for (size_t n = 0; n < PAIRS * BINS; n++)
-        assert_true(fabs(indirect[n]) < 10);
+        assert_true(isfinite(indirect[n]));
 }
 
 int main(void) {
+    gsl_set_error_handler_off(); // as the program does: a matrix may have no Cholesky factor
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hnc_closure_of_two_types_that_are_alike_is_that_of_one),
         cmocka_unit_test(test_hnc_closure_is_the_inverse_by_hand_when_h_are_gaussians),
