@@ -278,9 +278,4 @@ void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           "next: figures and summary.json are in %s; mesofit export %s "
                           "--engine lammps writes the model for LAMMPS, or for another engine",
                           folder, folder);
-    else
-        mf_progress_print(
-            to,
-            "next: figures and summary.json are in %s; docs/fit.md has a remedy for each reason",
-            folder);
 }

@@ -47,7 +47,8 @@ void mf_fit_closing_verdict(const struct fit_file *fit, const struct fit_result 
 bool mf_fit_closing_is_open(const struct fit_file *fit, const struct fit_result *result,
                             char text[FIT_VERDICT_SIZE]);
 
-/// Say them.
+/// Say them. What to do next stands here of a fit that succeeded; of another it follows the reason,
+/// which is the message that the program ends with.
 void mf_fit_closing_print(struct progress *to, const struct fit_file *fit,
                           const struct unknowns *unknowns, const struct fit_result *result,
                           const char *folder);

@@ -208,7 +208,8 @@ void mf_fit_print_unconverged(const char *folder, const struct inverse_step *ste
                               const char *reason) {
     if (isfinite(step->error))
         mf_status_fail(STATUS_UNCONVERGED,
-                       "the fit has not converged%s%s; its best curves are in %s",
+                       "the fit has not converged%s%s; next: its best curves, figures and "
+                       "summary.json are in %s; docs/fit.md has a remedy for each reason",
                        reason[0] ? ": " : "", reason, folder);
     else if (reason[0])
         mf_status_fail(STATUS_UNCONVERGED,
