@@ -85,6 +85,15 @@ static enum status read_number(const struct command_line *line, int option, doub
     return STATUS_OK;
 }
 
+static enum status read_times(const struct command_line *line, struct frames_plan *frames) {
+    TRY(read_number(line, BEGIN, 0, &frames->begin));
+    TRY(read_number(line, END, 0, &frames->end));
+    if (frames->begin > frames->end)
+        return mf_status_fail(STATUS_BAD_INPUT, "--begin %s is after --end %s: exchange them",
+                              line->own[BEGIN], line->own[END]);
+    return STATUS_OK;
+}
+
 static enum status read_count(const struct command_line *line, int option, int64_t *count) {
     const char *const text = line->own[option];
     char *end = NULL;
@@ -157,8 +166,7 @@ static enum status read_request(const struct command_line *line, struct measure_
     static const double above_zero = 1e-300;
     struct frames_plan *const frames = &request->frames;
     TRY(mf_command_read_box(line->own[BOX], frames->options.box));
-    TRY(read_number(line, BEGIN, 0, &frames->begin));
-    TRY(read_number(line, END, 0, &frames->end));
+    TRY(read_times(line, frames));
     TRY(read_number(line, EVERY, above_zero, &frames->every));
     TRY(read_number(line, RANGE, above_zero, &request->measured.range));
     TRY(read_number(line, WINDOW, above_zero, &request->measured.motion.window));

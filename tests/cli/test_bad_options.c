@@ -37,6 +37,8 @@ static const struct command_line bad_lines[] = {
     {{"simulate", "scene.json", "--seed", "99999999999999999999"}, {"--seed takes a whole number"}},
     {{"simulate", "scene.json", "--seed", "-1"}, {"--seed takes a whole number"}},
     {{"simulate", "scene.json", "--seed", "1.5"}, {"--seed takes a whole number"}},
+    {{"measure", "scene.json", "--begin", "30", "--end", "20"},
+     {"--begin 30 is after --end 20", "exchange them"}},
     {{"measure", "scene.json", "--force", "1.0"},
      {"--force takes no value such as 1.0: did you mean --forces R?"}},
     {{"simulate", "scene.json", "--quiet", "2"},
