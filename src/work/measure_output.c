@@ -406,11 +406,15 @@ static enum status write_target(const struct measure_result *result) {
 
 static enum status write_used(const struct measure_result *result) {
     const struct measured_plan *const plan = &result->measured->plan;
+    const struct units *const units = &result->units;
     struct json_writer *writer = mf_json_writer_create();
+    mf_json_write_text(writer, "units", mf_units_systems[units->system]);
+    mf_json_writer_set_units(writer, units);
     write_trajectories(result, writer);
-    mf_json_write_number(writer, "range", plan->range);
+    mf_json_write_number(writer, "range", mf_units_factor(units, "lambda") * plan->range);
     mf_json_write_integer(writer, "bins", plan->bins);
-    mf_json_write_number(writer, "q_maximum", plan->waves.q_maximum);
+    mf_json_write_number(writer, "q_maximum",
+                         mf_units_factor(units, "1/lambda") * plan->waves.q_maximum);
     mf_json_write_integer(writer, "waves", plan->waves.waves);
     if (plan->profile.bins > 0) {
         mf_json_begin(writer, "density_profile");

@@ -7,6 +7,13 @@
 
 #include <math.h>
 
+/// What makes numbers in nm and ps those of the results, with the name of their unit.
+static double find_unit(const struct measure_result *result, const char *unit,
+                        char name[UNITS_NAME_SIZE]) {
+    mf_units_name(&result->units, unit, name);
+    return mf_units_factor(&result->units, unit);
+}
+
 /// The exponent of the MSD over the times that D is of: 1 of beads that diffuse, 2 of those that
 /// fly.
 static double find_growth(const struct motion *motion, const struct motion_summary *summary) {
@@ -25,14 +32,14 @@ static double find_growth(const struct motion *motion, const struct motion_summa
 static void print_diffusion(struct progress *progress, const struct measure_result *result) {
     const struct measured_motion *const motion = &result->measured->motion;
     const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
-    const double time = mf_units_factor(&result->units, "tau");
-    char diffusion[UNITS_MEASURED_SIZE], unit[UNITS_NAME_SIZE];
+    char diffusion[UNITS_MEASURED_SIZE], unit[UNITS_NAME_SIZE], of_time[UNITS_NAME_SIZE];
+    const double time = find_unit(result, "tau", of_time);
     mf_progress_print(
         progress,
         "D = %s by the MSD from %.4g to %.4g %s, for this box: a larger "
         "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
         mf_units_measured(&result->units, "lambda^2/tau", s.msd, s.msd_error, diffusion),
-        time * s.fit_begin, time * s.fit_end, mf_units_name(&result->units, "tau", unit));
+        time * s.fit_begin, time * s.fit_end, of_time);
     static const double ballistic = 1.3;
     const double growth = find_growth(&motion->motion, &s);
     if (growth > ballistic)
@@ -52,9 +59,9 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
             100 * (double)path->far / (double)path->steps);
     if (motion->path.differences)
         mf_progress_print(progress,
-                          "mesofit: warning: the VACF is of differences of positions over %.4g ps: "
+                          "mesofit: warning: the VACF is of differences of positions over %.4g %s: "
                           "it is lower at short times, its integral is right",
-                          2 * motion->interval);
+                          2 * time * motion->interval, of_time);
     else if (motion->has_vacf && mf_motion_is_coarse(&s))
         mf_progress_print(
             progress,
@@ -62,6 +69,26 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
             "%.0f %% of their correlation from one to the next",
             mf_units_factor(&result->units, "lambda^2/tau") * s.green_kubo,
             mf_units_suffix(&result->units, "lambda^2/tau", unit), 100 * s.vacf_drop);
+}
+
+/// Of how far apart pairs, and for how long.
+static void print_escapes(struct progress *progress, const struct measure_result *result) {
+    const struct measured_motion *const motion = &result->measured->motion;
+    const struct etd_grid *const grid = &motion->etd.grid;
+    char of_length[UNITS_NAME_SIZE], of_time[UNITS_NAME_SIZE];
+    const double length = find_unit(result, "lambda", of_length);
+    const double time = find_unit(result, "tau", of_time);
+    const double from = length * grid->r_minimum, to = length * grid->r_maximum;
+    if (mf_etd_complete(&motion->etd) == 0)
+        return;
+    if (mf_etd_pairs(&motion->etd) == 0)
+        mf_progress_print(progress,
+                          "mesofit: warning: no escape times: no pair was between %.4g and %.4g %s",
+                          from, to, of_length);
+    else
+        mf_progress_print(
+            progress, "escape times of pairs from %.4g to %.4g %s, in windows of %.4g %s", from, to,
+            of_length, time * (double)(grid->times - 1) * motion->interval, of_time);
 }
 
 static void print_motion(struct progress *progress, const struct measure_result *result) {
@@ -79,16 +106,7 @@ static void print_motion(struct progress *progress, const struct measure_result 
                           motion->frames, (long long)motion->motion.plan.lags);
     else
         print_diffusion(progress, result);
-    const struct etd_grid *const grid = &motion->etd.grid;
-    const bool complete = mf_etd_complete(&motion->etd) > 0;
-    if (complete && mf_etd_pairs(&motion->etd) == 0)
-        mf_progress_print(progress,
-                          "mesofit: warning: no escape times: no pair was between %.4g and %.4g nm",
-                          grid->r_minimum, grid->r_maximum);
-    else if (complete)
-        mf_progress_print(
-            progress, "escape times of pairs from %.4g to %.4g nm, in windows of %.4g ps",
-            grid->r_minimum, grid->r_maximum, (double)(grid->times - 1) * motion->interval);
+    print_escapes(progress, result);
     if (!motion->has_vacf && motion->plan.velocities == MEASURED_VELOCITIES_USUAL)
         mf_progress_print(progress, "no VACF: there are no velocities (--velocities "
                                     "differences makes them of positions)");
@@ -147,30 +165,37 @@ static enum status print_constraints(struct progress *progress,
             TRY(mf_measured_moments(result->measured, order, g, &found));
             if (!mf_bonded_distribution_is_constrained(order, &found))
                 continue;
-            const char *const unit = mf_bonded_kinds[order]->is_length ? "nm" : "degrees";
+            char unit[UNITS_NAME_SIZE];
+            const double factor =
+                find_unit(result, mf_bonded_kinds[order]->is_length ? "lambda" : "degrees", unit);
             mf_progress_print(
                 progress,
                 "%s \"%s\": a constraint (standard deviation %.2g, mean %.4g %s): a fit replaces "
                 "it by a harmonic potential with a standard deviation of %.2g %s",
-                mf_bonded_kinds[order]->name, molecules->group[order][g].name, found.deviation,
-                found.mean, unit, mf_bonded_distribution_narrow(order, found.mean), unit);
+                mf_bonded_kinds[order]->name, molecules->group[order][g].name,
+                factor * found.deviation, factor * found.mean, unit,
+                factor * mf_bonded_distribution_narrow(order, found.mean), unit);
         }
     return STATUS_OK;
 }
 
 static void print_pairs(struct progress *progress, const struct measure_result *result) {
     const struct measured *const measured = result->measured;
-    mf_progress_print(progress, "g(r) to %.4g nm in %lld bins%s", measured->plan.range,
-                      (long long)measured->plan.bins,
+    char unit[UNITS_NAME_SIZE];
+    const double length = find_unit(result, "lambda", unit);
+    mf_progress_print(progress, "g(r) to %.4g %s in %lld bins%s", length * measured->plan.range,
+                      unit, (long long)measured->plan.bins,
                       measured->pairs.within     ? ", without pairs that molecules exclude"
                       : measured->pairs.molecule ? ", without pairs of one molecule or residue"
                                                  : "");
     if (mf_rdf_observable.assess(mf_measured_state(measured, &mf_rdf_observable), NULL) !=
         STATUS_OK)
         mf_progress_print(progress, "mesofit: warning: %s", mf_status_message());
+    const double wave_number = find_unit(result, "1/lambda", unit);
     if (measured->plan.waves.q_maximum > 0)
-        mf_progress_print(progress, "S(q) to %.4g 1/nm, of at most %lld waves in a bin",
-                          measured->plan.waves.q_maximum, (long long)measured->plan.waves.waves);
+        mf_progress_print(progress, "S(q) to %.4g %s, of at most %lld waves in a bin",
+                          wave_number * measured->plan.waves.q_maximum, unit,
+                          (long long)measured->plan.waves.waves);
 }
 
 /// What is kept of forces: memory for all blocks, however many frames there are.

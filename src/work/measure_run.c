@@ -16,6 +16,7 @@
 
 struct run {
     const struct measure_request *request;
+    struct units units; ///< of the results
     struct progress progress;
     struct run_folder folder;
     struct input_files inputs;
@@ -180,15 +181,12 @@ static void print_interval(struct run *run, size_t count) {
                           every, interval);
 }
 
-/// Whether a bead is of several atoms, which bonds of fixed length may join to those of others.
-static bool joins_atoms(const struct run *run) {
-    return run->mapping.beads < run->mapping.atoms;
-}
-
 /// What frames that are read again would tell again.
 static void tell_first(struct run *run, size_t count) {
     print_interval(run, count);
-    if (run->request->measured.force_cutoff > 0 && run->mapping.broken && joins_atoms(run))
+    // Of several atoms, which bonds of fixed length may join to those of others.
+    const bool parts = run->mapping.broken && run->mapping.beads < run->mapping.atoms;
+    if (run->request->measured.force_cutoff > 0 && parts)
         mf_progress_print(&run->progress,
                           "mesofit: warning: --forces: beads are parts of their residues: bonds of "
                           "fixed length between them make their forces wrong; simulate the atoms "
@@ -267,15 +265,17 @@ static enum status read_frames(struct run *run) {
 static void print_slowest(const struct run *run, const struct frame_features_slowest *slowest,
                           char *text, size_t size) {
     const struct composition *const composition = &run->measured.pairs.composition;
-    char name[COMPOSITION_PAIR_NAME_SIZE] = "";
+    const double length = mf_units_factor(&run->units, "lambda");
+    char name[COMPOSITION_PAIR_NAME_SIZE] = "", unit[UNITS_NAME_SIZE];
     if (composition_is_mixed(composition))
         mf_composition_pair_name(composition, slowest->pair, name);
     if (slowest->volume)
         snprintf(text, size, "the volume");
     else
-        snprintf(text, size, "%s%s%s at %.3g to %.3g nm",
+        snprintf(text, size, "%s%s%s at %.3g to %.3g %s",
                  slowest->within ? "pairs within molecules" : "pairs", name[0] ? " " : "", name,
-                 slowest->from, slowest->to);
+                 length * slowest->from, length * slowest->to,
+                 mf_units_name(&run->units, "lambda", unit));
 }
 
 static enum status read_again(struct run *run, size_t skip) {
@@ -293,17 +293,19 @@ static enum status read_again(struct run *run, size_t skip) {
 /// What goes on to the end is no beginning, and nothing can be left out.
 static enum status tell_drift(struct run *run, size_t begin) {
     struct frame_features_slowest most;
-    char what[128];
+    char what[128], unit[UNITS_NAME_SIZE];
     TRY(mf_frame_features_drift(&run->measured.features, &run->measured.pairs, begin, &most));
     if (!most.drifts)
         return STATUS_OK;
     print_slowest(run, &most, what, sizeof what);
+    const double factor = most.volume ? mf_units_factor(&run->units, "lambda^d") : 1;
     snprintf(run->drift, sizeof run->drift,
              "the trajectory is not in equilibrium: %s: %.4g +- %.1g%s in the first %.0f %% of the "
              "frames, %.4g +- %.1g in the rest: use frames from where nothing changes any more "
              "(--begin), or simulate for longer",
-             what, most.drift.before, most.drift.before_error, most.volume ? " nm^3" : " a frame",
-             100 * most.drift.part, most.drift.after, most.drift.after_error);
+             what, factor * most.drift.before, factor * most.drift.before_error,
+             most.volume ? mf_units_suffix(&run->units, "lambda^d", unit) : " a frame",
+             100 * most.drift.part, factor * most.drift.after, factor * most.drift.after_error);
     mf_progress_print(&run->progress, "mesofit: warning: %s", run->drift);
     return STATUS_OK;
 }
@@ -355,7 +357,7 @@ static enum status write_results(struct run *run, bool interrupted) {
                                           .mapping = &run->mapping,
                                           .measured = &run->measured,
                                           .kinds = run->request->molecules ? &run->molecules : NULL,
-                                          .units = mf_measured_units(run->request->system),
+                                          .units = run->units,
                                           .folder = run->folder.path,
                                           .drift = run->drift,
                                           .interrupted = interrupted,
@@ -430,6 +432,7 @@ enum status mf_measure_run(const struct measure_request *request,
                            const struct run_options *options) {
     struct measure_request own = *request;
     struct run run = {.request = &own,
+                      .units = mf_measured_units(request->system),
                       .progress = mf_progress_begin(options->quiet, options->watcher)};
     enum status status = find_bonds_of_map(&own);
     if (status == STATUS_OK)

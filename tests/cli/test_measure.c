@@ -261,13 +261,23 @@ static void test_measure_writes_what_it_has_when_it_is_stopped(void **state) {
 static void test_measure_speaks_angstrom_when_asked(void **state) {
     (void)state;
     MEASURE(trr, "-s", gro, "-o", "nm", "--quiet");
-    MEASURE(trr, "-s", gro, "-o", "angstrom", "--units", "angstrom-fs", "--quiet");
+    MEASURE(trr, "-s", gro, "-o", "angstrom", "--units", "angstrom-fs");
+    assert_contains(result.err, "g(r) to 19.7 angstrom in 197 bins");
+    assert_contains(result.err, "S(q) to 4.013 1/angstrom");
+    assert_close_relative(results_number("angstrom/used.json", "range"),
+                          10 * results_number("nm/used.json", "range"), 1e-12);
+    results_assert_text("angstrom/used.json", "units", "angstrom-fs");
     char *table = temporary_folder_read("angstrom/rdf.tsv");
     assert_contains(table, "# r[angstrom]\tg[1]\tg_error[1]\n0.05\t");
     free(table);
     assert_close_relative(results_number("angstrom/summary.json", "density"),
                           1e-3 * results_number("nm/summary.json", "density"), 1e-12);
     assert_close_relative(results_number("angstrom/summary.json", "interval"), 20, 1e-12);
+    MEASURE(xtc, "-s", gro, "-o", "motion", "--units", "angstrom-fs");
+    assert_contains(result.err,
+                    "escape times of pairs from 2.5 to 5 angstrom, in windows of 40 fs");
+    assert_null(strstr(result.err, " nm"));
+    assert_null(strstr(result.err, " ps"));
 }
 
 static void test_measure_tells_types_apart_when_the_map_does(void **state) {

@@ -170,6 +170,8 @@ static void test_frames_before_equilibrium_are_left_out(void **state) {
     assert_true(results_number("all/summary.json", "frames") == 80);
     RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "--begin", "10", "-o", "rest");
     assert_null(strstr(result.err, "equilibrium"));
+    RUN_PROGRAM(&result, "measure", "box.xyz", "--static", "--units", "angstrom-fs", "-o", "other");
+    assert_contains(result.err, " angstrom) and are left out");
 }
 
 /// Atoms that spread one after the other until the end, which no half that is left out mends, or
