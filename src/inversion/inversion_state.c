@@ -3,6 +3,7 @@
 // What a state is made of: its system, its memory.
 #include "inversion/inversion_state.h"
 #include "inversion/inversion_low_rank.h"
+#include "problem/group_kind.h"
 #include "system/scaled_system.h"
 
 #include <math.h>
@@ -59,21 +60,76 @@ static int64_t find_least(const struct simulation_setup *scene, const struct top
     return particles;
 }
 
-/// Of each pair one image is in range.
+/// What an edge must hold, and in words why.
+struct inversion_edge {
+    double least;
+    const char *holds;
+};
+
+/// Of each pair one image is in range: of g(r), and of what is known.
+static struct inversion_edge find_edge_of_pairs(const struct inverse_problem *problem) {
+    const double range =
+        problem->unknown[UNKNOWN_POTENTIAL].wanted ? mf_rdf_bins_range(&problem->targets.bins) : 0;
+    double known = 0;
+    for (int pair = 0; pair < mf_composition_pairs(&problem->scene.composition); pair++) {
+        const struct curve *const curve = inverse_law_curve(&problem->known, pair);
+        known = fmax(known, curve ? mf_curve_cutoff(curve) : 0);
+    }
+    return known > range ? (struct inversion_edge){2 * known, "twice the cutoff of \"known\""}
+                         : (struct inversion_edge){2 * range, "twice the range of g(r)"};
+}
+
+/// By its target, or by its law if it has none [λ].
+static double find_bond_length(const struct inverse_problem *problem,
+                               const struct molecules *molecules, int g) {
+    for (size_t k = 0; k < problem->bonded; k++) {
+        const struct bonded_unknown *const unknown = &problem->group[k];
+        const double *const p = problem->targets.target[mf_group_kind_target(BONDED_BOND)].value;
+        if (unknown->order == BONDED_BOND && unknown->group == g)
+            return mf_bonded_distribution_moments(&unknown->bins, p + unknown->first).mean;
+    }
+    return mf_bonded_reach(&molecules->group[BONDED_BOND][g].curve, problem->scene.temperature);
+}
+
+/// A molecule that is stretched out, and what acts on it from beyond its ends.
+static struct inversion_edge find_edge_of_molecules(const struct inverse_problem *problem,
+                                                    double pairs) {
+    const struct simulation_setup *const scene = &problem->scene;
+    const struct molecules *const molecules =
+        mf_molecules_find(scene->interaction, scene->interactions);
+    double bond = 0, bonds = 0;
+    for (int g = 0; molecules && g < molecules->groups[BONDED_BOND]; g++)
+        bond = fmax(bond, find_bond_length(problem, molecules, g));
+    for (int k = 0; molecules && k < molecules->topology.kinds; k++)
+        bonds = fmax(bonds, molecules->topology.kind[k].beads - 1);
+    return (struct inversion_edge){bonds * bond + 0.5 * pairs,
+                                   "what keeps a molecule apart from its own image"};
+}
+
 static enum status check_edge(const struct inversion_state *state, const struct topology *topology,
-                              int64_t wanted) {
+                              int64_t wanted, const struct inversion_edge *edge) {
     const struct simulation_setup *scene = &state->problem->scene;
-    const double range = mf_rdf_bins_range(&state->problem->targets.bins);
-    const double edge = mf_box_shortest(&state->box);
-    const double share = pow(2 * range / mf_box_shortest(&scene->box), scene->box.dimensions);
+    const double found = mf_box_shortest(&state->box);
+    const double share = pow(edge->least / mf_box_shortest(&scene->box), scene->box.dimensions);
     const double beads = share * (double)mf_composition_particles(&scene->composition);
-    if (!state->problem->unknown[UNKNOWN_POTENTIAL].wanted || edge >= 2 * range)
+    if (found >= edge->least)
         return STATUS_OK;
-    return mf_status_fail(
-        STATUS_BAD_INPUT,
-        "method.particles: %lld make a box whose shortest edge, %g" STATUS_LENGTH
-        ", is below twice the range of g(r), %g" STATUS_LENGTH "; %lld are the least",
-        (long long)wanted, edge, range, (long long)find_least(scene, topology, beads));
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "method.particles: %lld make a box whose shortest edge, %g" STATUS_LENGTH
+                          ", is below %s, %g" STATUS_LENGTH "; %lld are the least",
+                          (long long)wanted, found, edge->holds, edge->least,
+                          (long long)find_least(scene, topology, beads));
+}
+
+/// Molecules that meet their own images in the scene may do so in a smaller box, too.
+static enum status check_edges(const struct inversion_state *state, const struct topology *topology,
+                               int64_t wanted) {
+    const struct inversion_edge pairs = find_edge_of_pairs(state->problem);
+    const struct inversion_edge whole = find_edge_of_molecules(state->problem, pairs.least);
+    TRY(check_edge(state, topology, wanted, &pairs));
+    return whole.least > mf_box_shortest(&state->problem->scene.box)
+               ? STATUS_OK
+               : check_edge(state, topology, wanted, &whole);
 }
 
 /// As many particles as are asked for, at the densities of the scene.
@@ -91,7 +147,7 @@ static enum status choose_size(struct inversion_state *state) {
     state->composition = system.composition;
     state->box = mf_box_scaled(&scene->box, (double)mf_composition_particles(&system.composition) /
                                                 (double)count);
-    TRY(check_edge(state, topology, wanted));
+    TRY(check_edges(state, topology, wanted));
     return topology ? mf_scaled_system_topology(&system, topology, &state->topology) : STATUS_OK;
 }
 

@@ -311,6 +311,17 @@ static void refuse(void *state, const char *from, const char *to, const char *wo
     run_program_assert_refused(&result, "wrong", word, 1, words);
 }
 
+/// The range of g(r) is 1.2: that of the known part decides.
+static void test_a_small_box_holds_the_range_of_the_known_part(void **state) {
+    small_inputs_change(*state, "run.json", KNOWN,
+                        "\"known\": {\"law\": \"gaussian\", \"cutoff\": 2}");
+    small_inputs_change(*state, "run.json", "\"precision\"", "\"particles\": 100, \"precision\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "wrong", "--quiet");
+    const char *words[] = {"method.particles: 100 make a box whose shortest edge, 3.68",
+                           "twice the cutoff of \"known\", 4; 12", NULL};
+    run_program_assert_refused(&result, "wrong", words[0], 1, words);
+}
+
 static void test_what_is_wrong_is_said_in_one_line(void **state) {
     refuse(*state, KNOWN, "\"known\": {\"law\": \"coulomb\"}", "scene.known.law");
     refuse(*state, KNOWN, "\"known\": {\"A-A\": {\"law\": \"gaussian\"}}",
@@ -341,6 +352,7 @@ int main(void) {
         TEST(test_pairs_without_a_target_are_known),
         TEST(test_bonds_are_found_beside_a_known_part),
         TEST(test_a_search_finds_the_rest),
+        TEST(test_a_small_box_holds_the_range_of_the_known_part),
         TEST(test_what_is_wrong_is_said_in_one_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -315,6 +315,20 @@ struct wrong {
     const char *from, *to, *words[3];
 };
 
+/// Of chains of five beads, stretched out with the range of g(r): 4 · 0.6 + 1.2.
+static void test_fit_molecules_refuses_a_box_in_which_they_meet_themselves(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", run, "[\"A\", \"B\", \"A\"]",
+                       "[\"A\", \"B\", \"A\", \"A\", \"B\"]");
+    small_inputs_change(*state, "run.json", "\"count\": 80", "\"count\": 48");
+    small_inputs_change(*state, "run.json", "\"imc\"", "\"imc\", \"particles\": 110");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "method.particles: 110 make a box whose shortest edge, 3.39");
+    assert_contains(result.err, "is below what keeps a molecule apart from its own image, 3.5");
+    assert_contains(result.err, "are the least");
+}
+
 static void test_fit_molecules_refuses_what_cannot_be(void **state) {
     static const struct wrong wrong[] = {
         {"\"imc\"", "\"hnc\"", {"method.name: \"hnc\" does not fit molecules", NULL}},
@@ -419,6 +433,9 @@ int main(void) {
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_names_a_number_that_whole_molecules_make,
                                         enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(
+            test_fit_molecules_refuses_a_box_in_which_they_meet_themselves, enter,
+            small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_refuses_what_cannot_be, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_tells_a_wrong_name_in_one_line, enter,
