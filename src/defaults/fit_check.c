@@ -9,6 +9,7 @@
 #include "observe/kirkwood_buff.h"
 #include "observe/rdf_observable.h"
 #include "inversion/inversion.h"
+#include "inversion/inversion_state.h"
 #include "problem/group_kind.h"
 #include "problem/measurement.h"
 #include "problem/unknowns.h"
@@ -325,6 +326,17 @@ static enum status check_windows(const struct fit_file *fit, const char *file) {
                         verification->plan.samples, verification->plan.every);
 }
 
+/// Before the scene is begun, which takes long of many molecules. Other engines sample all of it.
+static enum status check_size(const struct fit_file *fit, const char *file) {
+    const int64_t particles = (int64_t)mf_methods_sampled_particles(fit);
+    if (fit->engine.kind != ENGINE_NONE)
+        return STATUS_OK;
+    const enum status status = mf_inversion_check_size(&fit->problem, particles);
+    return status == STATUS_OK
+               ? STATUS_OK
+               : mf_status_prefix(mf_units_convert_message(&fit->scene.units, status), "%s", file);
+}
+
 enum status mf_fit_check(const struct fit_file *fit, const char *file) {
     const struct target_files *files = &fit->files;
     TRY(check_molecules(fit, file));
@@ -361,6 +373,7 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) {
             file);
     // Targets first: a potential begins with that of g(r).
     TRY(mf_target_sanity_check(files, &fit->scene, file));
+    TRY(check_size(fit, file));
     const enum status status = try_scene(fit);
     return status == STATUS_OK ? status : mf_status_prefix(status, "%s: scene", file);
 }

@@ -100,6 +100,19 @@ static enum status read_parameters(struct fit_file *fit, struct json_object *obj
     return STATUS_OK;
 }
 
+size_t mf_methods_sampled_particles(const struct fit_file *fit) {
+    static const char *const names[] = {"particles", "potential_particles"};
+    int64_t count = 0;
+    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
+        for (const struct field *field = table->fields; field->name; field++)
+            for (int k = 0; k < 2; k++)
+                if (strcmp(field->name, names[k]) == 0)
+                    memcpy(&count,
+                           (const char *)fit->method_parameters + table->offset + field->offset,
+                           sizeof count);
+    return (size_t)count;
+}
+
 void mf_methods_check(const struct fit_file *fit, struct json_object *root) {
     if (fit->parameters_given && fit->method &&
         fit->method->tables->fields != mf_automatic.tables->fields)

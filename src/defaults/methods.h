@@ -24,3 +24,6 @@ enum status mf_methods_read(struct fit_file *fit, struct json_object *root) MUST
 
 /// Once a method is chosen: whether the parameters without a name are its own.
 void mf_methods_check(const struct fit_file *fit, struct json_object *root);
+
+/// Particles of the samples of an inversion; 0: as many as the scene has, or no samples.
+size_t mf_methods_sampled_particles(const struct fit_file *fit);

@@ -12,18 +12,18 @@
 /// rare ones are rounded, and keep two.
 static const double max_distortion = 0.2;
 
-const struct topology *mf_inversion_topology(const struct inversion_state *state) {
-    const struct simulation_setup *scene = &state->problem->scene;
+static const struct topology *topology_of(const struct simulation_setup *scene) {
     const struct molecules *molecules = mf_molecules_find(scene->interaction, scene->interactions);
-    if (state->topology.kinds > 0)
-        return &state->topology;
     return molecules ? &molecules->topology : NULL;
 }
 
-static enum status check_shares(const struct inversion_state *state,
+const struct topology *mf_inversion_topology(const struct inversion_state *state) {
+    return state->topology.kinds > 0 ? &state->topology : topology_of(&state->problem->scene);
+}
+
+static enum status check_shares(const struct composition *composition,
                                 const struct topology *topology, int64_t wanted,
                                 const struct scaled_system *system) {
-    const struct composition *composition = &state->problem->scene.composition;
     if (!mf_scaled_system_is_alike(composition, topology))
         return mf_status_fail(
             STATUS_BAD_INPUT,
@@ -106,10 +106,9 @@ static struct inversion_edge find_edge_of_molecules(const struct inverse_problem
                                    "what keeps a molecule apart from its own image"};
 }
 
-static enum status check_edge(const struct inversion_state *state, const struct topology *topology,
+static enum status check_edge(const struct simulation_setup *scene, const struct box *box,
                               int64_t wanted, const struct inversion_edge *edge) {
-    const struct simulation_setup *scene = &state->problem->scene;
-    const double found = mf_box_shortest(&state->box);
+    const double found = mf_box_shortest(box);
     const double share = pow(edge->least / mf_box_shortest(&scene->box), scene->box.dimensions);
     const double beads = share * (double)mf_composition_particles(&scene->composition);
     if (found >= edge->least)
@@ -118,36 +117,54 @@ static enum status check_edge(const struct inversion_state *state, const struct 
                           "method.particles: %lld make a box whose shortest edge, %g" STATUS_LENGTH
                           ", is below %s, %g" STATUS_LENGTH "; %lld are the least",
                           (long long)wanted, found, edge->holds, edge->least,
-                          (long long)find_least(scene, topology, beads));
+                          (long long)find_least(scene, topology_of(scene), beads));
 }
 
 /// Molecules that meet their own images in the scene may do so in a smaller box, too.
-static enum status check_edges(const struct inversion_state *state, const struct topology *topology,
+static enum status check_edges(const struct inverse_problem *problem, const struct box *box,
                                int64_t wanted) {
-    const struct inversion_edge pairs = find_edge_of_pairs(state->problem);
-    const struct inversion_edge whole = find_edge_of_molecules(state->problem, pairs.least);
-    TRY(check_edge(state, topology, wanted, &pairs));
-    return whole.least > mf_box_shortest(&state->problem->scene.box)
+    const struct inversion_edge pairs = find_edge_of_pairs(problem);
+    const struct inversion_edge whole = find_edge_of_molecules(problem, pairs.least);
+    TRY(check_edge(&problem->scene, box, wanted, &pairs));
+    return whole.least > mf_box_shortest(&problem->scene.box)
                ? STATUS_OK
-               : check_edge(state, topology, wanted, &whole);
+               : check_edge(&problem->scene, box, wanted, &whole);
 }
 
-/// As many particles as are asked for, at the densities of the scene.
+/// So many particles at the densities of the scene, and their box.
+static enum status find_size(const struct inverse_problem *problem, int64_t wanted,
+                             struct scaled_system *system, struct box *box) {
+    const struct simulation_setup *scene = &problem->scene;
+    const struct topology *topology = topology_of(scene);
+    *system = mf_scaled_system(&scene->composition, topology, wanted);
+    *box = mf_box_scaled(&scene->box, (double)mf_composition_particles(&system->composition) /
+                                          (double)mf_composition_particles(&scene->composition));
+    TRY(check_shares(&scene->composition, topology, wanted, system));
+    return check_edges(problem, box, wanted);
+}
+
+/// Whether that is another number than the scene has.
+static bool is_other_size(const struct inverse_problem *problem, int64_t wanted) {
+    return problem->engine == NULL && wanted > 0 &&
+           wanted != mf_composition_particles(&problem->scene.composition);
+}
+
+enum status mf_inversion_check_size(const struct inverse_problem *problem, int64_t wanted) {
+    struct scaled_system system;
+    struct box box;
+    return is_other_size(problem, wanted) ? find_size(problem, wanted, &system, &box) : STATUS_OK;
+}
+
 static enum status choose_size(struct inversion_state *state) {
     const struct simulation_setup *scene = &state->problem->scene;
-    const struct topology *topology = mf_inversion_topology(state);
-    const int64_t wanted = state->problem->engine ? 0 : state->parameters->particles;
-    const int64_t count = mf_composition_particles(&scene->composition);
+    const struct topology *topology = topology_of(scene);
+    struct scaled_system system;
     state->composition = scene->composition;
     state->box = scene->box;
-    if (wanted <= 0 || wanted == count)
+    if (!is_other_size(state->problem, state->parameters->particles))
         return STATUS_OK;
-    const struct scaled_system system = mf_scaled_system(&scene->composition, topology, wanted);
-    TRY(check_shares(state, topology, wanted, &system));
+    TRY(find_size(state->problem, state->parameters->particles, &system, &state->box));
     state->composition = system.composition;
-    state->box = mf_box_scaled(&scene->box, (double)mf_composition_particles(&system.composition) /
-                                                (double)count);
-    TRY(check_edges(state, topology, wanted));
     return topology ? mf_scaled_system_topology(&system, topology, &state->topology) : STATUS_OK;
 }
 

@@ -112,6 +112,12 @@ enum status mf_inversion_state_init(struct inversion_state *state,
                                     const struct inversion_parameters *parameters,
                                     const struct inversion_basis_size *coefficients) MUST_USE;
 
+/// Whether so many particles, at the densities of the scene, keep the shares of its types and kinds
+/// of molecules in a box that holds its forces; 0: those of the scene. It takes no time, however
+/// many there are. Fails: BAD_INPUT. Tested: test_fit_molecules.
+enum status mf_inversion_check_size(const struct inverse_problem *problem,
+                                    int64_t particles) MUST_USE;
+
 /// The molecules of the system that is sampled; NULL: it has none.
 const struct topology *mf_inversion_topology(const struct inversion_state *state);
 

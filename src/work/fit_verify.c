@@ -5,6 +5,7 @@
 #include "base/spent.h"
 #include "defaults/fit_engine.h"
 #include "defaults/fit_states.h"
+#include "defaults/methods.h"
 #include "problem/unknowns.h"
 #include "report/fit_output.h"
 #include "report/fit_verification.h"
@@ -62,20 +63,6 @@ static enum status advise(const struct fit_file *state, const struct verify_step
                           message, time * step->used, unit, time * step->would_hold, unit);
 }
 
-/// Particles of the samples of an inversion; 0: as many as the scene has, or no samples.
-static size_t sampled_particles(const struct fit_file *fit) {
-    static const char *const names[] = {"particles", "potential_particles"};
-    int64_t count = 0;
-    for (const struct inverse_table *table = fit->method->tables; table->fields; table++)
-        for (const struct field *field = table->fields; field->name; field++)
-            for (int k = 0; k < 2; k++)
-                if (strcmp(field->name, names[k]) == 0)
-                    memcpy(&count,
-                           (const char *)fit->method_parameters + table->offset + field->offset,
-                           sizeof count);
-    return (size_t)count;
-}
-
 /// Equilibrations of so many times the steps of a whole verification before.
 enum { AGAIN = 4 };
 
@@ -108,7 +95,7 @@ static enum status verify_state(const struct fit_file *state, int round, double 
                        &parameters, listener, verification);
     CHECK(advise(state, &verification->step, status));
     mf_fit_step_add_dynamics(state, verification);
-    verification->sampled = sampled_particles(state);
+    verification->sampled = mf_methods_sampled_particles(state);
     mf_fit_verification_add_units(&state->scene.units, verification);
 done:
     mf_unknowns_laws_clear(&laws);

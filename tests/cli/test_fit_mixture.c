@@ -286,6 +286,12 @@ static void test_imc_of_a_mixture_refuses_particles_that_change_its_shares(void 
     assert_contains(result.err,
                     "run.json: method.particles: 20 change the share of a type by 93 %; "
                     "34 are the next that keep all shares");
+    // Before particles are placed, which takes long of many: here there is no room for them.
+    small_inputs_change(*state, "run.json", "\"types\"",
+                        "\"placement\": \"random\", \"separation\": 3, \"types\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--quiet");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "method.particles: 20 change the share");
 }
 
 #define TEST(name)                                                                                 \
