@@ -132,6 +132,14 @@ static void test_describe_of_a_path_is_what_stands_there(void **state) {
     assert_contains(result.err, "measure");
 }
 
+/// A default beside "else chosen" would be said to be taken.
+static void test_describe_says_once_what_a_missing_time_step_is(void **state) {
+    (void)state;
+    RUN_PROGRAM(&result, "describe", "scene.time_step");
+    assert_contains(result.out, "time step; default: chosen if needed, else 0.01");
+    assert_contains(result.out, "number, default none");
+}
+
 static void test_describe_of_an_observable_names_the_target_of_that_name(void **state) {
     (void)state;
     RUN_PROGRAM(&result, "describe", "rdf");
@@ -169,6 +177,7 @@ int main(void) {
         TEST(test_describe_knows_every_topic_that_it_names),
         TEST(test_describe_of_a_group_is_all_that_it_holds),
         TEST(test_describe_of_a_path_is_what_stands_there),
+        TEST(test_describe_says_once_what_a_missing_time_step_is),
         TEST(test_describe_of_an_observable_names_the_target_of_that_name),
         TEST(test_describe_of_a_key_tells_where_it_is),
         TEST(test_describe_says_which_integrator_is_the_default),
