@@ -61,16 +61,27 @@ static double find_neighbour(const struct view *view, double spacing) {
                : find_first_neighbour(view, spacing);
 }
 
-/// The first minimum after the neighbours; without one, half as far again as they are.
+/// Whether g rises from one bin to a later one by more than noise.
+static bool rises(const struct view *view, size_t from, size_t to) {
+    const double noise = hypot(view->error[from], view->error[to]);
+    return view->g[to] - view->g[from] > fmax(min_peak, peak_errors * noise);
+}
+
+/// The first minimum after the neighbours: g is above 1 again, or, where bonded neighbours fill the
+/// gap between shells and it is never below, it rises by more than noise. Without one, half as far
+/// again as they are.
 static double find_shell(const struct view *view, double neighbour) {
     static const double without = 1.5, min = 1.2, max = 2;
     const struct rdf_bins *bins = view->bins;
-    size_t k = highest_bin(view), lowest;
-    while (k < bins->count && view->g[k] >= 1)
+    size_t k = 0, lowest;
+    while (k + 1 < bins->count && mf_rdf_bins_edge(bins, k + 1) <= neighbour)
         k++;
-    for (lowest = k; k < bins->count && view->g[k] < 1; k++)
+    for (lowest = k; k < bins->count; k++) {
         if (view->g[k] < view->g[lowest])
             lowest = k;
+        if (view->g[k] >= 1 && (view->g[lowest] < 1 || rises(view, lowest, k)))
+            break;
+    }
     const double shell = mf_rdf_bins_centre(bins, lowest);
     return k < bins->count && shell > min * neighbour && shell < max * neighbour
                ? shell

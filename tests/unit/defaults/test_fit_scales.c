@@ -55,6 +55,26 @@ static void test_fit_scales_finds_curvature_neighbours_shell_and_how_far_g_is_se
     assert_close(scales.core, 1 - sqrt(log(150) / 150), width);
 }
 
+/// Bonded neighbours of neighbours fill the gap at 1.4; below 1 is what is behind the second shell.
+static double molecules(double r) {
+    static const double at[][2] = {{0.9, 0},    {1, 2},      {1.4, 1.05}, {1.6, 1.3},
+                                   {1.85, 0.9}, {2.2, 1.02}, {2.5, 1}};
+    size_t k = 1;
+    while (k + 1 < sizeof at / sizeof *at && r > at[k][0])
+        k++;
+    const double part = fmin(1, fmax(0, (r - at[k - 1][0]) / (at[k][0] - at[k - 1][0])));
+    return at[k - 1][1] + part * (at[k][1] - at[k - 1][1]);
+}
+
+static void test_fit_scales_ends_the_first_shell_of_molecules_where_g_stays_above_1(void **state) {
+    struct known known;
+    (void)state;
+    fill(&known, molecules, 0.001);
+    const struct fit_scales scales = mf_fit_scales_find(&known.rdf, 1, 0.002);
+    assert_close(scales.neighbour, 1, width);
+    assert_close(scales.shell, 1.4, width);
+}
+
 static double flat(double r) {
     (void)r;
     return 1;
@@ -204,6 +224,7 @@ static void test_fit_scales_join_keeps_pairs_and_noise(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fit_scales_finds_curvature_neighbours_shell_and_how_far_g_is_seen),
+        cmocka_unit_test(test_fit_scales_ends_the_first_shell_of_molecules_where_g_stays_above_1),
         cmocka_unit_test(test_fit_scales_of_a_gas_without_structure_are_those_of_its_density),
         cmocka_unit_test(test_fit_scales_takes_wider_parabolas_where_g_is_noisy),
         cmocka_unit_test(test_fit_scales_finds_neighbours_where_g_has_no_peak_above_its_tail),
