@@ -116,12 +116,15 @@ static double density_of_gas(const void *context, int pair, double r) {
     return exp(-phi / setup->temperature);
 }
 
-static double find_bonded_step(const struct simulation_setup *setup) {
+static double find_fastest(const struct simulation_setup *setup) {
     const struct molecules *molecules = mf_molecules_find(setup->interaction, setup->interactions);
+    const double squared = molecules ? mf_hybrid_step_fastest(molecules, setup->temperature) : 0;
+    return sqrt(squared / mf_usual_step_mass(setup));
+}
+
+static double find_bonded_step(const struct simulation_setup *setup, double fastest) {
     const struct integrator *integrator = setup->integrator;
     const double mass = mf_usual_step_mass(setup);
-    const double fastest =
-        molecules ? sqrt(mf_hybrid_step_fastest(molecules, setup->temperature) / mass) : 0;
     if (!(fastest > 0))
         return INFINITY;
     if (!mf_respa_acts(setup))
@@ -145,7 +148,8 @@ struct usual_step mf_usual_step_find(const struct simulation_setup *setup) {
             mf_usual_step_curvature(setup->potential, density_of_gas, setup, &usual.curvature_at);
     if (usual.curvature > 0)
         usual.pairs = mf_usual_step_of_pairs(setup, usual.curvature, mf_usual_step_mass(setup));
-    usual.bonds = find_bonded_step(setup);
+    usual.fastest = find_fastest(setup);
+    usual.bonds = find_bonded_step(setup, usual.fastest);
     return usual;
 }
 

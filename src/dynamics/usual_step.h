@@ -21,6 +21,7 @@ bool mf_usual_step_applies(const struct simulation_setup *setup);
 struct usual_step {
     double free, pairs, bonds;
     double curvature, curvature_at; ///< Φ'' where it is largest [k_B T_0/λ²], and there r [λ]
+    double fastest; ///< Ω of the fastest of bonds, angles and dihedrals; 0: none [1/τ]
 };
 
 /// Which of them is the least.

@@ -47,7 +47,7 @@ static enum status read_root(struct scene *scene, struct json_document *document
 
 static void choose_step(struct scene *scene) {
     char chosen[SCENE_STEP_SIZE];
-    mf_scene_step_choose(scene, chosen);
+    mf_scene_step_choose(scene, false, chosen);
 }
 
 /// A scene of a file, or, with `own`, of the caller.

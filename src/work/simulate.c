@@ -8,6 +8,7 @@
 #include "scene/scene_doubts.h"
 #include "scene/scene_step.h"
 #include "io/checkpoint.h"
+#include "observe/shear_viscosity.h"
 #include "report/progress.h"
 #include "work/explain.h"
 #include "work/simulate_observables.h"
@@ -70,7 +71,9 @@ static enum status read_file(struct run *run, const char *file, const struct run
         status = mf_simulate_observables_read(&run->observables, &root, &run->scene.setup);
     mf_json_finish(&root);
     TRY(mf_json_close(document, status));
-    mf_scene_step_choose(&run->scene, run->chosen);
+    mf_scene_step_choose(&run->scene,
+                         mf_simulate_observables_has(&run->observables, &mf_shear_viscosity),
+                         run->chosen);
     if (options->callers)
         TRY(mf_simulate_observables_add(&run->observables, options->callers));
     if (options->has_seed)

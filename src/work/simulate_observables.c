@@ -62,6 +62,14 @@ enum status mf_simulate_observables_read(struct simulate_observables *observable
     return STATUS_OK;
 }
 
+bool mf_simulate_observables_has(const struct simulate_observables *observables,
+                                 const struct observable *observable) {
+    const struct observable_use *use = observables->use;
+    while (use->observable && use->observable != observable)
+        use++;
+    return use->observable != NULL;
+}
+
 enum status mf_simulate_observables_add(struct simulate_observables *observables,
                                         const struct caller_observables *callers) {
     struct observable_use *use = observables->use;

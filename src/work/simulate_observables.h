@@ -21,6 +21,10 @@ struct simulate_observables {
 enum status mf_simulate_observables_read(struct simulate_observables *observables,
                                          struct json_object *root,
                                          const struct simulation_setup *setup) MUST_USE;
+/// Whether it is among them.
+bool mf_simulate_observables_has(const struct simulate_observables *observables,
+                                 const struct observable *observable);
+
 /// Add those of who calls the library. Fails: BAD_INPUT, NO_MEMORY.
 enum status mf_simulate_observables_add(struct simulate_observables *observables,
                                         const struct caller_observables *callers) MUST_USE;

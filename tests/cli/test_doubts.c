@@ -127,12 +127,13 @@ static void test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted(void **st
          "chosen: time step 0.003 tau: the curvature of the potential is up to ", "0.003", "0.03",
          "warning: time_step: 0.03 tau is 7.6 times as long as this potential allows", 0.003},
         {scene, "\"time_step\": 0.003,", NULL, NULL,
-         "chosen: time step 0.006 ps: the distributions of bonds and angles are to be right within "
-         "0.3 % of their variance",
+         "chosen: time step 0.015 ps, in which bonds take 4 of their own: the distributions of "
+         "bonds "
+         "and angles are to be right within 0.3 % of their variance",
          "0.006", "0.06",
          "warning: time_step: 0.06 ps is 8.1 times as long as bonds, angles and dihedrals allow if "
          "their distributions are to be right within 0.3 % of their variance, 0.0074 ps",
-         0.006},
+         0.015},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         char text[2048], given[64], *at;
@@ -162,6 +163,20 @@ static void test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted(void **st
         assert_contains(result.out, cases[k].doubt);
         RUN_PROGRAM(&result, "simulate", "run.json", "-o", "out", "--force");
         assert_contains(result.err, cases[k].doubt);
+    }
+}
+
+/// What follows the forces of all, step by step, has no use for steps of the bonds' own; nor has a
+/// file whose dynamics are given them.
+static void test_bonds_take_no_steps_of_their_own_where_all_forces_are_followed(void **state) {
+    static const char *const whole[] = {"\"shear_viscosity\": {\"every\": 1, \"lags\": 8}",
+                                        "\"dynamics\": {\"integrator\": \"aboba\"}"};
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "run.json", scene, "\"time_step\": 0.003", whole[k]);
+        small_inputs_change(*state, "run.json", "\"samples\": 1,", "\"samples\": 100,");
+        RUN_PROGRAM(&result, "simulate", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_contains(result.out, "chosen: time step 0.006 ps: the distributions of bonds");
     }
 }
 
@@ -199,6 +214,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_numbers_that_no_liquid_has_are_doubted),
         TEST(test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted),
+        TEST(test_bonds_take_no_steps_of_their_own_where_all_forces_are_followed),
         TEST(test_long_time_step_of_molecules_is_doubted_in_fits),
         TEST(test_bonds_in_angstrom_and_angles_in_radians_are_doubted),
     };
