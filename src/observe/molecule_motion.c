@@ -165,9 +165,10 @@ static void print(const void *state, const struct observable_results *results, c
                   size_t size) {
     const struct state *s = state;
     const struct motion_summary found = mf_motion_result(&s->motion[0], NULL);
-    char text[UNITS_MEASURED_SIZE];
-    snprintf(line, size, "%s: D = %s of the centres of mass", s->molecules->topology.kind[0].name,
-             mf_units_measured(results->units, "lambda^2/tau", found.msd, found.msd_error, text));
+    char text[UNITS_MEASURED_SIZE], early[MOTION_EARLY_SIZE];
+    snprintf(line, size, "%s: D = %s of the centres of mass%s", s->molecules->topology.kind[0].name,
+             mf_units_measured(results->units, "lambda^2/tau", found.msd, found.msd_error, text),
+             mf_motion_early_text(&found, early));
 }
 
 /// Nanoseconds of a bead and sample, and of a molecule and time origin.

@@ -380,6 +380,17 @@ static void find_systematic(const struct motion *motion, struct motion_summary *
     s->vacf_drop = 1 - next / start;
 }
 
+/// Errors of both ends as if they were independent, which makes that of their ratio too large.
+static void find_growth(const struct motion *motion, struct motion_summary *s) {
+    const size_t first = fit_first(&motion->plan), last = (size_t)motion->plan.lags;
+    const double way = log((double)last / (double)first);
+    double begin, begin_error, end, end_error;
+    average(motion, motion->squares, read_lag, first, &begin, &begin_error);
+    average(motion, motion->squares, read_lag, last, &end, &end_error);
+    s->growth = log(end / begin) / way;
+    s->growth_error = hypot(begin_error / begin, end_error / end) / way;
+}
+
 struct motion_summary mf_motion_result(const struct motion *motion,
                                        const struct motion_curves *curves) {
     struct motion_summary s = {0};
@@ -395,6 +406,7 @@ struct motion_summary mf_motion_result(const struct motion *motion,
     s.blocks = (double)mf_motion_blocks(motion);
     s.fit_begin = lag_time(motion, fit_first(&motion->plan));
     s.fit_end = lag_time(motion, lags);
+    find_growth(motion, &s);
     s.maxwell = mf_maxwell_result(&motion->maxwell);
     return s;
 }
@@ -411,35 +423,5 @@ enum status mf_motion_table(const struct motion *motion, double **columns) {
     mf_statistics_mark_unknown_errors(column[4], rows);
     for (size_t k = 0; k < rows; k++)
         column[0][k] = lag_time(motion, k);
-    return STATUS_OK;
-}
-
-double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary) {
-    const double error = isnan(summary->green_kubo_error) ? 0 : summary->green_kubo_error;
-    return hypot(hypot(error, summary->green_kubo_sampling), summary->green_kubo_truncation);
-}
-
-bool mf_motion_is_coarse(const struct motion_summary *s) {
-    static const double coarse = 0.03;
-    return s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error);
-}
-
-enum status mf_motion_assess(const struct motion_summary *s) {
-    static const double deviations = 4;
-    const double error = mf_motion_green_kubo_uncertainty(s);
-    if (mf_motion_is_coarse(s))
-        return mf_status_fail(STATUS_UNCONVERGED,
-                              "D by Green and Kubo, %.3g" STATUS_DIFFUSION
-                              ", may be off by %.2g" STATUS_DIFFUSION ": the VACF falls by %.0f "
-                              "%% from one sample to the next; lower \"motion.every\"",
-                              s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
-    // It is not known of one window.
-    if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
-        return mf_status_fail(STATUS_UNCONVERGED,
-                              "D is %.3g" STATUS_DIFFUSION " by the MSD and %.3g" STATUS_DIFFUSION
-                              " by Green and Kubo, with errors of %.1g" STATUS_DIFFUSION
-                              " and %.1g" STATUS_DIFFUSION
-                              ": a longer window (\"motion.lags\") may bring them together",
-                              s->msd, s->green_kubo, s->msd_error, error);
     return STATUS_OK;
 }

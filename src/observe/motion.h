@@ -103,6 +103,7 @@ struct motion_summary {
     double vacf_drop;             ///< 1 − VACF(one interval)/VACF(0)
     double blocks;                ///< of time, complete: what errors rest on
     double fit_begin, fit_end;    ///< the window of the least squares               [τ]
+    double growth, growth_error;    ///< exponent of the MSD over that window: 1 of what diffuses
     struct maxwell_summary maxwell; ///< NaN without friction: no thermostat
 };
 
@@ -123,6 +124,15 @@ struct motion_summary {
 /// statistical error: a VACF that has decayed adds nothing there.
 struct motion_summary mf_motion_result(const struct motion *motion,
                                        const struct motion_curves *curves);
+
+/// Whether what moves does not diffuse yet over the window that D is of: it flies, with an exponent
+/// near 2, or is held, as beads of chains are by their molecule, below 1. Tested: test_motion.
+bool mf_motion_is_early(const struct motion_summary *summary);
+
+/// "; no D yet: the MSD grows as t^0.62" for a line, or "". Returns `text`.
+enum { MOTION_EARLY_SIZE = 64 };
+const char *mf_motion_early_text(const struct motion_summary *summary,
+                                 char text[MOTION_EARLY_SIZE]);
 
 /// Columns of a table, each of lags + 1 numbers after the one before, which the caller frees:
 /// time, MSD, its error, VACF, its error; errors that are not known are NaN. Fails: NO_MEMORY.

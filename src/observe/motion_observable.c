@@ -103,17 +103,18 @@ static void print(const void *state, const struct observable_results *results, c
                   size_t size) {
     const struct motion *motion = state;
     char msd[UNITS_MEASURED_SIZE], green_kubo[NUMBER_TEXT_SIZE], time_unit[UNITS_NAME_SIZE];
+    char early[MOTION_EARLY_SIZE];
     const struct motion_summary s = mf_motion_result(motion, NULL);
     const struct units *units = results->units;
     const double factor = mf_units_factor(units, "lambda^2/tau");
     const double time = mf_units_factor(units, "tau");
     mf_number_text(factor * s.green_kubo, factor * mf_motion_green_kubo_uncertainty(&s),
                    green_kubo);
-    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g %s%s%s%s",
+    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g %s%s%s%s%s",
              mf_units_measured(units, "lambda^2/tau", s.msd, s.msd_error, msd), time * s.fit_begin,
              time * s.fit_end, mf_units_name(units, "tau", time_unit),
              motion->has_velocities ? ", " : "", motion->has_velocities ? green_kubo : "",
-             motion->has_velocities ? " by Green and Kubo" : "");
+             motion->has_velocities ? " by Green and Kubo" : "", mf_motion_early_text(&s, early));
 }
 
 static enum status assess(const void *state, const struct simulation_setup *setup) {

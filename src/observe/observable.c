@@ -21,6 +21,7 @@ extern const struct observable mf_molecule_motion, mf_slab;
 const struct observable *const mf_observables[] = {
     &mf_rdf_observable,
     &mf_etd_observable,
+    &mf_molecule_motion, // before that of beads, which diffuse with their molecules alone
     &mf_motion_observable,
     &mf_thermodynamics_observable,
     &mf_force_covariance_observable,
@@ -35,7 +36,6 @@ const struct observable *const mf_observables[] = {
     &mf_local_density,
     &mf_shear_viscosity,
     BONDED_LIST(BONDED) & mf_molecule_sizes,
-    &mf_molecule_motion,
     &mf_rdf_intermolecular,
     &mf_kirkwood_buff_observable,
     &mf_conserved,

@@ -14,20 +14,6 @@ static double find_unit(const struct measure_result *result, const char *unit,
     return mf_units_factor(&result->units, unit);
 }
 
-/// The exponent of the MSD over the times that D is of: 1 of beads that diffuse, 2 of those that
-/// fly.
-static double find_growth(const struct motion *motion, const struct motion_summary *summary) {
-    const size_t rows = (size_t)motion->plan.lags + 1, last = rows - 1;
-    OWNED double *columns = NULL;
-    if (mf_motion_table(motion, &columns) != STATUS_OK)
-        return NAN;
-    const double *const time = columns, *const msd = columns + rows;
-    size_t first = last;
-    while (first > 1 && time[first - 1] >= summary->fit_begin * (1 - 1e-9))
-        first--;
-    return log(msd[last] / msd[first]) / log(time[last] / time[first]);
-}
-
 /// How far beads go, and what is to be known of it: a periodic box slows D.
 static void print_diffusion(struct progress *progress, const struct measure_result *result) {
     const struct measured_motion *const motion = &result->measured->motion;
@@ -40,13 +26,11 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
         "one has a larger D, by 2.84 k_B T/(6 pi eta L) of a cube",
         mf_units_measured(&result->units, "lambda^2/tau", s.msd, s.msd_error, diffusion),
         time * s.fit_begin, time * s.fit_end, of_time);
-    static const double ballistic = 1.3;
-    const double growth = find_growth(&motion->motion, &s);
-    if (growth > ballistic)
+    if (mf_motion_is_early(&s))
         mf_progress_print(progress,
                           "mesofit: warning: the MSD grows as t^%.2g there: the beads do not "
-                          "diffuse yet, and that is no D; a longer trajectory has one",
-                          growth);
+                          "diffuse yet, and that is no D; a longer trajectory has one%s",
+                          s.growth, s.growth < 1 && result->kinds ? ", that of the molecules" : "");
     const struct measured_path *const path = &motion->path;
     if (path->far > 0)
         mf_progress_print(

@@ -92,8 +92,15 @@ static void test_brownian_chains_diffuse_as_rouse_says(void **state) {
         "\"length\": 7, \"bond\": \"spring\"}}},\n"
         "\"dynamics\": {\"integrator\": \"brownian\", \"friction\": 2},\n"
         "\"molecule_motion\": {\"every\": 10, \"lags\": 20, \"origin_every\": 5},\n"
+        "\"motion\": {\"every\": 10, \"lags\": 20, \"origin_every\": 5},\n"
         "\"measure\": {\"equilibration\": 100, \"samples\": 2000, \"every\": 10}}\n";
     simulate(*state, chains, "out");
+    // Their beads are held by the chains for longer than this window.
+    const char *const centres = strstr(result.err, "four: D = "), *const end =
+                                                                      strchr(centres, '\n');
+    const char *const of_beads = strstr(result.err, "\nD = ");
+    const char *const early = strstr(result.err, "; no D yet: the MSD grows as t^0.");
+    assert_true(end <= of_beads && of_beads < early);
     static const struct {
         const char *kind;
         double beads;

@@ -65,6 +65,8 @@ static void assert_free_flight(int dimensions, double drift) {
     assert_close(s.fit_end, 4, rounding);
     assert_close(s.msd, square * 2 * 3 / (2 * dimensions), rounding);
     assert_close(s.green_kubo, square * 4 / dimensions, rounding);
+    assert_close(s.growth, 2, rounding);
+    assert_true(mf_motion_is_early(&s));
     assert_true(isnan(s.maxwell.probability));
     int32_t max = 0;
     for (size_t k = 0; k < PARTICLES; k++)

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Whether diffusion coefficients can be trusted.
+#include "observe/motion.h"
+
+#include <math.h>
+#include <stdio.h>
+
+bool mf_motion_is_early(const struct motion_summary *s) {
+    static const double least = 0.85, most = 1.3, errors = 2;
+    const double error = s->growth_error > 0 ? errors * s->growth_error : 0;
+    return s->growth + error < least || s->growth - error > most;
+}
+
+const char *mf_motion_early_text(const struct motion_summary *s, char text[MOTION_EARLY_SIZE]) {
+    text[0] = '\0';
+    if (mf_motion_is_early(s))
+        snprintf(text, MOTION_EARLY_SIZE, "; no D yet: the MSD grows as t^%.2g", s->growth);
+    return text;
+}
+
+double mf_motion_green_kubo_uncertainty(const struct motion_summary *summary) {
+    const double error = isnan(summary->green_kubo_error) ? 0 : summary->green_kubo_error;
+    return hypot(hypot(error, summary->green_kubo_sampling), summary->green_kubo_truncation);
+}
+
+bool mf_motion_is_coarse(const struct motion_summary *s) {
+    static const double coarse = 0.03;
+    return s->green_kubo_sampling > fmax(coarse * fabs(s->green_kubo), s->green_kubo_error);
+}
+
+enum status mf_motion_assess(const struct motion_summary *s) {
+    static const double deviations = 4;
+    const double error = mf_motion_green_kubo_uncertainty(s);
+    if (mf_motion_is_coarse(s))
+        return mf_status_fail(STATUS_UNCONVERGED,
+                              "D by Green and Kubo, %.3g" STATUS_DIFFUSION
+                              ", may be off by %.2g" STATUS_DIFFUSION ": the VACF falls by %.0f "
+                              "%% from one sample to the next; lower \"motion.every\"",
+                              s->green_kubo, s->green_kubo_sampling, 100 * s->vacf_drop);
+    // It is not known of one window.
+    if (s->msd_error > 0 && fabs(s->msd - s->green_kubo) > deviations * hypot(s->msd_error, error))
+        return mf_status_fail(STATUS_UNCONVERGED,
+                              "D is %.3g" STATUS_DIFFUSION " by the MSD and %.3g" STATUS_DIFFUSION
+                              " by Green and Kubo, with errors of %.1g" STATUS_DIFFUSION
+                              " and %.1g" STATUS_DIFFUSION
+                              ": a longer window (\"motion.lags\") may bring them together",
+                              s->msd, s->green_kubo, s->msd_error, error);
+    return STATUS_OK;
+}
