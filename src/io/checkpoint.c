@@ -6,7 +6,6 @@
 #include "io/output.h"
 
 #include <errno.h>
-#include <stdbool.h>
 #include <string.h>
 
 static const char magic[16] = "mesofit state 8";
@@ -93,6 +92,20 @@ static enum status check_sum(FILE *stream, const char *file, uint64_t *bytes) {
                               file);
     *bytes -= head;
     return STATUS_OK;
+}
+
+bool mf_checkpoint_is_of_others(const char *file, uint64_t digest) {
+    FILE *stream;
+    uint64_t bytes;
+    if (mf_input_open(&stream, file) != STATUS_OK)
+        return false;
+    bool differs =
+        check_magic(stream, file) == STATUS_OK && check_sum(stream, file, &bytes) == STATUS_OK;
+    rewind(stream);
+    differs = differs && check_magic(stream, file) == STATUS_OK &&
+              check_digest(stream, file, digest) != STATUS_OK;
+    fclose(stream);
+    return differs;
 }
 
 static enum status fail_shape(const char *file) {

@@ -8,6 +8,7 @@
 
 #include "base/memory.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /// Save spans, whole or not at all.
@@ -18,6 +19,10 @@ enum status mf_checkpoint_save(const char *file, uint64_t digest, const struct m
 /// or shape, or if its checksum is not that of its bytes; nothing is loaded then.
 enum status mf_checkpoint_load(const char *file, uint64_t digest, const struct memory_span *spans,
                                size_t count) MUST_USE;
+
+/// Whether a whole checkpoint of this version is of other settings, which is why it cannot be
+/// loaded. Tested: test_checkpoint.
+bool mf_checkpoint_is_of_others(const char *file, uint64_t digest);
 
 /// Load one span alone: number `number`, from 0, of a state whose other lengths depend on it.
 /// Fails: as mf_checkpoint_load; IO.

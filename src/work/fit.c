@@ -67,6 +67,15 @@ static enum status save(struct run *run) {
 static enum status load(struct run *run) {
     char path[OUTPUT_PATH_SIZE];
     mf_run_folder_file(&run->folder, "checkpoint.bin", path);
+    if (mf_checkpoint_is_of_others(path, run->digest))
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: the run's settings have changed since it was written, and --resume goes on with "
+            "the same; for more iterations, or others, begin in another folder (-o) where this fit "
+            "has come to, by its curves as \"start\" of the unknowns ({\"law\": \"table\", "
+            "\"file\": "
+            "\"%s/potential.tsv\"}), or again with --force",
+            path, run->folder.path);
     TRY(mf_fit_checkpoint_load(&run->checkpoint, path, run->digest));
     run->seconds_before = run->kept.time.seconds;
     run->processor_origin = clock_process_seconds() - run->kept.time.processor;

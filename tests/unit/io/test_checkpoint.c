@@ -62,6 +62,8 @@ static void test_checkpoint_load_gives_the_bits_that_were_saved(void **state) {
 
 static void test_checkpoint_load_refuses_when_the_settings_are_others(void **state) {
     assert_refused(save(state), DIGEST + 1, SPANS, "settings have changed");
+    assert_true(mf_checkpoint_is_of_others(save(state), DIGEST + 1));
+    assert_false(mf_checkpoint_is_of_others(save(state), DIGEST));
 }
 
 static void test_checkpoint_load_refuses_when_the_shape_is_another(void **state) {
