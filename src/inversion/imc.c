@@ -27,13 +27,11 @@ bool mf_imc_is_known(const struct inversion *inversion, double directions) {
 /// which makes the step the most probable one. Near the targets the smoothest step within the noise
 /// is none at all, though g still asks for one along the ramp: the most probable one is taken. Far
 /// from them, with one type of beads, it would take what is not linear for the ramp, and g hardly
-/// calls that back: soft beads ended four errors off. In a mixture the smoothest step leaves the
-/// concentrations, few directions among many bins, far outside their own noise: there the most
-/// probable one is taken wherever C is known in all bins.
+/// calls that back: soft beads ended four errors off. In a mixture the most probable one is taken
+/// always: the smoothest leaves the concentrations, few directions among many bins, far outside
+/// their own noise, and makes up for that by a ramp, which is smooth: of urea in water 3900 bar.
 static double choose_strength(struct inversion *inversion) {
-    const struct potential_grid *grid = inversion_grid(inversion);
-    if (grid->pairs > 1 ? !mf_imc_is_known(inversion, (double)grid->known)
-                        : !mf_inversion_is_near(inversion))
+    if (inversion_grid(inversion)->pairs <= 1 && !mf_inversion_is_near(inversion))
         return 0; // by the noise
     inversion->course.most_probable = true;
     return mf_inversion_band_prior(inversion);
