@@ -53,8 +53,8 @@ static enum status smooth(struct inversion_state *state, double *start) {
     NEW_ARRAY(variance, known);
     NEW_ARRAY(phi, known);
     NEW_ARRAY(x, known);
-    if (!find_variance(state, variance))
-        goto done;
+    if (state->problem->trial || !find_variance(state, variance))
+        goto done; // in a trial nothing is sampled
     for (size_t a = 0; a < known; a++) {
         phi[a] = start[grid->known_point[a]];
         for (size_t b = 0; b < known; b++)
@@ -76,24 +76,31 @@ done:
     return status;
 }
 
-/// phi += k_B T (h − c).
-static enum status add_indirect(const struct inversion_state *state, double *phi) {
+/// h − c of the target, which is found once.
+static enum status find_indirect(struct inversion_state *state) {
     enum status status = STATUS_OK;
-    const struct inverse_problem *problem = state->problem;
-    const struct potential_grid *grid = &state->grid;
-    double *g = NULL, *indirect = NULL;
+    const struct hnc_liquid liquid = mf_inversion_liquid(state);
+    double *g = NULL;
+    if (state->indirect)
+        return STATUS_OK;
     NEW_ARRAY(g, state->bins);
-    NEW_ARRAY(indirect, state->bins);
+    NEW_ARRAY(state->indirect, state->bins);
     for (size_t k = 0; k < state->bins; k++)
         g[k] = mf_inversion_target_g(state, k);
-    const struct hnc_liquid liquid = mf_inversion_liquid(state);
-    CHECK(mf_hnc_closure(&liquid, g, indirect));
-    for (size_t n = 0; n < grid->known; n++)
-        phi[grid->known_point[n]] += problem->scene.temperature * indirect[grid->known_bin[n]];
+    CHECK(mf_hnc_closure(&liquid, g, state->indirect));
 done:
     mf_memory_free(g);
-    mf_memory_free(indirect);
     return status;
+}
+
+/// phi += k_B T (h − c).
+static enum status add_indirect(struct inversion_state *state, double *phi) {
+    const struct potential_grid *grid = &state->grid;
+    TRY(find_indirect(state));
+    for (size_t n = 0; n < grid->known; n++)
+        phi[grid->known_point[n]] +=
+            state->problem->scene.temperature * state->indirect[grid->known_bin[n]];
+    return STATUS_OK;
 }
 
 /// Replace phi by the nearest that coefficients make, where potentials are made of them.
@@ -113,7 +120,7 @@ done:
 
 enum status mf_inversion_reference(struct inversion_state *state, double *phi) {
     mf_potential_grid_mean_force(&state->grid, state->problem, phi);
-    if (knows_hnc(state))
+    if (knows_hnc(state) && !state->problem->trial)
         TRY(add_indirect(state, phi));
     return smooth(state, phi);
 }

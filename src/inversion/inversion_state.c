@@ -324,11 +324,12 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     mf_inversion_response_clear(&state->response);
     mf_memory_free(state->target.shape);
     mf_memory_free(state->groups);
-    double *arrays[] = {
-        state->target.ideal,     state->target.unit,   state->target.counts,    state->target.error,
-        state->target.min,       state->target.common, state->excess,           state->variance,
-        state->bin_inefficiency, state->pool.excess,   state->pool.variance,    state->pool.phi,
-        state->bulk.slope,       state->inside.g,      state->target.steepness, state->open.weight};
+    double *arrays[] = {state->target.ideal, state->target.unit,   state->target.counts,
+                        state->target.error, state->target.min,    state->target.common,
+                        state->excess,       state->variance,      state->bin_inefficiency,
+                        state->pool.excess,  state->pool.variance, state->pool.phi,
+                        state->bulk.slope,   state->inside.g,      state->target.steepness,
+                        state->open.weight,  state->indirect};
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
         mf_memory_free(arrays[k]);
 }

@@ -83,9 +83,10 @@ struct inversion_state {
     struct inversion_kirkwood_buff kirkwood_buff;
     struct inversion_assessment assessment;
     struct {
-        double *g;  ///< of the pairs that molecules exclude, shape [pairs, bins of a pair]
-        double min; ///< mf_hnc_closure_min_intramolecular; 0: not known
-    } inside;       ///< molecules by themselves, inversion/inversion_intramolecular.h
+        double *g;    ///< of the pairs that molecules exclude, shape [pairs, bins of a pair]
+        double min;   ///< mf_hnc_closure_min_intramolecular; 0: not known
+    } inside;         ///< molecules by themselves, inversion/inversion_intramolecular.h
+    double *indirect; ///< h − c of the target's pairs, shape [bins]; NULL until it is asked for
     struct {
         double *weight;     ///< of S in it, shape [known]
         double samples;     ///< its standard error by the samples of all states
