@@ -133,6 +133,7 @@ static enum status solve_softly(struct work *work, const struct hnc_liquid *liqu
     return STATUS_OK;
 }
 
+/// Where all fails c is h, and h − c is 0.
 static enum status solve(struct work *work, const struct hnc_liquid *liquid) {
     double softness = liquid->softness;
     bool found = false;
@@ -142,6 +143,8 @@ static enum status solve(struct work *work, const struct hnc_liquid *liquid) {
         TRY(solve_softly(work, liquid, softness, &found));
         softness = fmax(10 * softness, more_softness);
     }
+    if (!found)
+        memcpy(work->oz.c, work->h, work->oz.pairs * work->oz.cells * sizeof *work->h);
     return STATUS_OK;
 }
 
@@ -150,6 +153,8 @@ static double indirect_at(const struct work *work, size_t pair, double r) {
     const struct ornstein_zernike *oz = &work->oz;
     const double *h = work->h + pair * oz->cells, *c = oz->c + pair * oz->cells;
     size_t k = 0;
+    if (oz->cells == 1)
+        return h[0] - c[0];
     while (k + 2 < oz->cells && 0.5 * (oz->edge[k + 1] + oz->edge[k + 2]) < r)
         k++;
     const double left = 0.5 * (oz->edge[k] + oz->edge[k + 1]);
