@@ -94,8 +94,8 @@ struct fit_file {
     struct input_files inputs;
 };
 
-/// Read a run file and those that it names, each for itself. Fails: BAD_INPUT with all faults; IO;
-/// NO_MEMORY. Tested: tests/fuzz.
+/// Read a run file and those that it names, each for itself. Must be cleared, also after a failure.
+/// Fails: BAD_INPUT with all faults; IO; NO_MEMORY. Tested: tests/fuzz.
 enum status mf_fit_file_parse(struct fit_file *fit, const char *file,
                               const struct run_options *options) MUST_USE;
 
@@ -106,7 +106,8 @@ enum status mf_fit_check(const struct fit_file *fit, const char *file) MUST_USE;
 /// Check all that was read, and find the bases of unknowns. Fails: BAD_INPUT, NO_MEMORY.
 enum status mf_fit_file_check(struct fit_file *fit, const char *file) MUST_USE;
 
-/// Read a run file and check it. Fails: BAD_INPUT with all faults; IO; NO_MEMORY.
+/// Read a run file and check it. Must be cleared, also after a failure. Fails: BAD_INPUT with all
+/// faults; IO; NO_MEMORY.
 enum status mf_fit_file_read(struct fit_file *fit, const char *file,
                              const struct run_options *options) MUST_USE;
 void mf_fit_file_clear(struct fit_file *fit);

@@ -26,7 +26,7 @@ struct composition molecules_topology(struct topology *topology, struct topology
                                       struct topology_kind second, int types,
                                       const int64_t *single) {
     struct composition composition = {.types = types};
-    const struct topology_kind kinds[] = {first, second};
+    struct topology_kind kinds[] = {first, second};
     *topology = (struct topology){0};
     for (int type = 0; type < types; type++) {
         composition.count[type] = single ? single[type] : 0;
@@ -37,6 +37,8 @@ struct composition molecules_topology(struct topology *topology, struct topology
         for (int bead = 0; bead < kinds[k].beads; bead++)
             composition.count[kinds[k].type[bead]] += kinds[k].count;
     }
+    if (second.count == 0)
+        mf_topology_kind_clear(&kinds[1]);
     assert_ok(mf_topology_complete(topology, &composition));
     return composition;
 }

@@ -420,6 +420,7 @@ static void test_fit_defaults_choose_a_method_beside_its_parameters(void **state
                  "\"method\": {\"start\": \"mean-force\"}}"),
         STATUS_BAD_INPUT);
     assert_non_null(strstr(mf_status_message(), "give the \"name\" of the method"));
+    mf_fit_file_clear(&fit);
 }
 
 /// Rows that are ten times finer than the gas asks for are joined, and its g ends where it is 1.
