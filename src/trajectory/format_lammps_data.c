@@ -36,8 +36,12 @@ static enum status check(const struct lammps_data *data, const struct trajectory
     const char *const begin = (const char *)frame->raw.data;
     if (data->atoms > frame->raw.size)
         return mf_frame_fail_line(frame, begin, "the file is too short for so many atoms");
-    if (data->kinds && data->atom == NULL)
-        return STATUS_OK; // a template
+    const bool is_template = data->kinds && data->atom == NULL;
+    if (is_template && data->atoms == 0)
+        return mf_frame_fail_line(frame, begin,
+                                  "a template of LAMMPS has \"N atoms\" before its sections");
+    if (is_template)
+        return STATUS_OK;
     if (!data->is_text)
         return mf_frame_fail_line(frame, begin,
                                   "a data file of LAMMPS has \"N atoms\" and \"… xlo xhi\" or "

@@ -228,6 +228,17 @@ static void test_data_file_has_a_general_box_and_labels(void **state) {
     mf_trajectory_close(&trajectory);
 }
 
+/// A template's, too: what follows a section counts nothing.
+static void test_template_says_how_many_atoms_it_has_before_its_sections(void **state) {
+    assert_ok(try(state, "# water\n\n2 atoms\n\nTypes\n\n1 OW\n2 HW\n", "lj"));
+    assert_int_equal(trajectory.structure.atoms, 2);
+    mf_trajectory_close(&trajectory);
+    assert_int_equal(try(state, "# water\n\nTypes\n\n1 OW\n2 HW\n\n2 atoms\n", "lj"),
+                     STATUS_BAD_INPUT);
+    assert_contains(mf_status_message(),
+                    "a template of LAMMPS has \"N atoms\" before its sections");
+}
+
 static const char dump[] =
     "ITEM: TIMESTEP\n7\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n"
     "0 1\n0 1\n0 1\nITEM: ATOMS id x y z\n2 1 2 3\n1 4 5 6\n";
@@ -393,6 +404,7 @@ int main(void) {
         cmocka_unit_test(test_data_file_is_the_last_frame),
         TEST(test_data_file_has_any_of_four_styles),
         TEST(test_data_file_has_a_general_box_and_labels),
+        TEST(test_template_says_how_many_atoms_it_has_before_its_sections),
         TEST(test_dump_has_a_box_of_three_vectors),
         TEST(test_dump_is_periodic_when_it_does_not_say),
         TEST(test_dump_has_labels_in_the_place_of_types),
