@@ -109,12 +109,13 @@ static void test_friction_that_an_engine_has_goes_along(void **state) {
 }
 
 /// Where the configurational temperature is off by chance alone, the step is the result's; where
-/// the step makes it wrong, as its samples know, it is shortened.
+/// the step makes it wrong, as its samples know, it is shortened: 0.0166 ± 0.0012 by six seeds, 5
+/// to 10 errors of 8000 samples; of 500 it is 1.3 to 3.4, which needs luck.
 static void test_step_is_shortened_by_what_is_no_chance(void **state) {
     static const char *const measured[] = {"\"time_step\": 0.005, \"measure\": {\"equilibration\": "
                                            "100, \"samples\": 10, \"every\": 5}",
                                            "\"time_step\": 0.08, \"measure\": {\"equilibration\": "
-                                           "100, \"samples\": 500, \"every\": 4}"};
+                                           "100, \"samples\": 8000, \"every\": 4}"};
     for (int k = 0; k < 2; k++) {
         small_inputs_write(*state, "scene.json",
                            "{\"seed\": 5, \"box\": [3, 3, 3], \"particles\": {\"count\": 81},\n"
