@@ -101,17 +101,20 @@ static void fill(struct work *work, const struct hnc_liquid *liquid, const doubl
 }
 
 /// h as of an infinite system with such S(0): of one whose particles are always N, g is too small
-/// by the factor 1 − S_ab(0)/(V sqrt(ρ_a ρ_b)), as the numbers in parts of a large one vary.
+/// by the factor 1 − S_ab(0)/(V sqrt(ρ_a ρ_b)), as the numbers in parts of a large one vary. Pairs
+/// that do not exist do not repel each other.
 static void enlarge(struct work *work, const struct hnc_liquid *liquid, const double *structure) {
+    static const double most = 0.9; // of few molecules, while S(0) is not known
     const struct ornstein_zernike *oz = &work->oz;
     const double volume = mf_box_volume(liquid->box);
     for (size_t p = 0; p < oz->pairs; p++) {
         int type[2];
         mf_composition_pair_types(liquid->composition, (int)p, type);
+        const bool exists = mf_composition_has_pairs(liquid->composition, (int)p);
         const double missing = structure[(size_t)type[0] * oz->types + (size_t)type[1]] /
                                (volume * sqrt(oz->density[type[0]] * oz->density[type[1]]));
         for (size_t n = p * oz->cells; n < (p + 1) * oz->cells; n++)
-            work->h[n] = work->g[n] * (1 + missing) - 1;
+            work->h[n] = exists ? work->g[n] / (1 - fmin(missing, most)) - 1 : 0;
     }
 }
 

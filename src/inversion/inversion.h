@@ -9,9 +9,10 @@
 /// potential or goes back, and steps on.
 ///
 /// It starts from the hypernetted-chain inversion (mf_hnc_closure), with g continued beyond its
-/// range; where samples of that do not settle, from −k_B T ln g. Replicas begin from disorder, and
-/// again after a potential that made it worse: a poor one freezes a liquid or makes it cavitate,
-/// and what is left of that would be taken for the next potential's structure.
+/// range; where samples of that do not settle, or the first step leads away, from −k_B T ln g.
+/// Replicas begin from disorder, and again after a potential that made it worse: a poor one freezes
+/// a liquid or makes it cavitate, and what is left of that would be taken for the next potential's
+/// structure.
 ///
 /// Several states, at other temperatures, densities, compositions, share one set of potentials.
 /// Near the targets, and of pairs alone always, the step is that of the equations of all. With
@@ -166,12 +167,13 @@ void mf_inversion_start_try(struct inversion *inversion);
 /// Which start the fit has gone on from. @param[in] kept  whether the last potential is
 enum inverse_start mf_inversion_start_taken(const struct inversion *inversion, bool kept);
 
-/// Whether there is another start to be tried: the first is the hypernetted chain's.
+/// Whether there is another start to be tried: the first was the hypernetted chain's, a moment ago.
 bool mf_inversion_start_has_other(const struct inversion *inversion,
                                   const struct inversion_state *state);
 
-/// Whether the start was the hypernetted chain's, and samples of it are of no use.
-bool mf_inversion_start_is_poor(const struct inversion *inversion);
+/// Whether the start was the hypernetted chain's, and either its own samples are of no use, or
+/// those of the first step from it are, and were not kept as it led away.
+bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept);
 
 /// Fill phi with −k_B T ln g. As mf_inversion_start.
 enum status mf_inversion_start_again(struct inversion_state *state, double *phi) MUST_USE;

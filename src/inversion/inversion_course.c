@@ -219,7 +219,8 @@ enum status mf_inversion_course_accept(struct inversion *inversion, bool *kept) 
     progress->from_disorder = !*kept;
     progress->gave_up = assessment->unequilibrated.found && assessment->unequilibrated.for_long;
     progress->lost = start && !*kept && !mf_inversion_start_has_trial(inversion, false) &&
-                     !mf_inversion_start_is_poor(inversion) && !is_farther_than_first(inversion);
+                     !mf_inversion_start_is_poor(inversion, false) &&
+                     !is_farther_than_first(inversion);
     if (start && !*kept)
         return keep(inversion); // to have something to show
     if (start)
@@ -260,7 +261,7 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
     progress->first_start = 0;
     if (farther)
         return begin_again(inversion, mf_inversion_start);
-    if (!mf_inversion_start_is_poor(inversion)) {
+    if (!mf_inversion_start_is_poor(inversion, kept)) {
         mf_inversion_take_step(inversion);
         return STATUS_OK;
     }

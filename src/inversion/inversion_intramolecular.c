@@ -61,14 +61,22 @@ static enum status sample(struct inversion_state *state, const struct inverse_li
     return STATUS_OK;
 }
 
+/// Pairs of beads of two types that there are, over all, a bead with itself among them.
+static double find_existing(const struct composition *composition, int pair) {
+    int type[2];
+    mf_composition_pair_types(composition, pair, type);
+    return type[0] == type[1] ? 1 - 1 / (double)composition->count[type[0]] : 1;
+}
+
 /// Counts of so many rounds over those of an ideal gas, and what they tell of Ω.
 static enum status assess(struct inversion_state *state, const double *counts, int rounds,
                           double *min) {
     const struct hnc_liquid liquid = {&state->problem->targets.bins, &state->box,
                                       &state->composition, state->inside.g, 0};
     for (size_t n = 0; n < state->grid.pair_bins; n++)
-        state->inside.g[n] =
-            counts[n] / (rounds * (double)state->replicas.count * state->target.ideal[n]);
+        state->inside.g[n] = find_existing(&state->composition, (int)(n / state->grid.bins)) *
+                             counts[n] /
+                             (rounds * (double)state->replicas.count * state->target.ideal[n]);
     return mf_hnc_closure_min_intramolecular(&liquid, min);
 }
 

@@ -195,12 +195,13 @@ enum inverse_start mf_inversion_start_taken(const struct inversion *inversion, b
 bool mf_inversion_start_has_other(const struct inversion *inversion,
                                   const struct inversion_state *state) {
     const struct inversion_progress *progress = &inversion->course.progress;
-    return is_from_hnc(state) && !progress->second_start && progress->iteration == 0;
+    return is_from_hnc(state) && !progress->second_start && progress->iteration <= 1;
 }
 
-bool mf_inversion_start_is_poor(const struct inversion *inversion) {
-    return inversion->assessment.useless &&
-           mf_inversion_start_has_other(inversion, inversion->state);
+bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
+    const bool led_away = inversion->course.progress.iteration == 1 && !kept;
+    return mf_inversion_start_has_other(inversion, inversion->state) &&
+           inversion->assessment.useless != led_away;
 }
 
 enum status mf_inversion_start_again(struct inversion_state *state, double *phi) {

@@ -106,18 +106,21 @@ static struct inversion_edge find_edge_of_molecules(const struct inverse_problem
                                    "what keeps a molecule apart from its own image"};
 }
 
+/// What an edge may be shorter by than what it holds.
+static const double rounding = 1e-9;
+
 static enum status check_edge(const struct simulation_setup *scene, const struct box *box,
                               int64_t wanted, const struct inversion_edge *edge) {
     const double found = mf_box_shortest(box);
     const double share = pow(edge->least / mf_box_shortest(&scene->box), scene->box.dimensions);
     const double beads = share * (double)mf_composition_particles(&scene->composition);
-    if (found >= edge->least)
+    if (found >= edge->least * (1 - rounding))
         return STATUS_OK;
     return mf_status_fail(STATUS_BAD_INPUT,
                           "method.particles: %lld make a box whose shortest edge, %g" STATUS_LENGTH
                           ", is below %s, %g" STATUS_LENGTH "; %lld are the least",
                           (long long)wanted, found, edge->holds, edge->least,
-                          (long long)find_least(scene, topology_of(scene), beads));
+                          (long long)find_least(scene, topology_of(scene), beads * (1 - rounding)));
 }
 
 /// Molecules that meet their own images in the scene may do so in a smaller box, too.

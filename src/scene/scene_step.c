@@ -63,7 +63,7 @@ void mf_scene_step_choose(struct scene *scene, bool whole, char text[SCENE_STEP_
     text[0] = '\0';
     if (scene->given.time_step || !mf_usual_step_applies(setup))
         return;
-    const struct usual_step usual = mf_usual_step_find(setup);
+    struct usual_step usual = mf_usual_step_find(setup);
     const double least = usual_step_least(&usual);
     if (!(least > 0) || !isfinite(least)) // as of beads that nothing moves
         return;
@@ -71,6 +71,8 @@ void mf_scene_step_choose(struct scene *scene, bool whole, char text[SCENE_STEP_
     const double step = mf_usual_step_round(factor * fmax(least, outer));
     const bool splits = step / factor > least;
     setup->time_step = step / factor;
+    if (splits) // the least of the others
+        usual.bonds = mf_usual_step_of_impulses(usual.fastest);
     describe(&usual, units, reason);
     describe_others(setup, others);
     snprintf(text, SCENE_STEP_SIZE, "chosen: time step %.4g %s%s: %.200s%.100s", step,

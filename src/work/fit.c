@@ -71,10 +71,9 @@ static enum status load(struct run *run) {
         return mf_status_fail(
             STATUS_BAD_INPUT,
             "%s: the run's settings have changed since it was written, and --resume goes on with "
-            "the same; for more iterations, or others, begin in another folder (-o) where this fit "
-            "has come to, by its curves as \"start\" of the unknowns ({\"law\": \"table\", "
-            "\"file\": "
-            "\"%s/potential.tsv\"}), or again with --force",
+            "the same; for more iterations, or others, begin in another folder (-o) with the pair "
+            "potentials of this one, as \"start\" of unknowns.potential ({\"law\": \"table\", "
+            "\"file\": the full path of %s/potential.tsv}); --force begins anew in this one",
             path, run->folder.path);
     TRY(mf_fit_checkpoint_load(&run->checkpoint, path, run->digest));
     run->seconds_before = run->kept.time.seconds;

@@ -127,9 +127,7 @@ static void test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted(void **st
          "chosen: time step 0.003 tau: the curvature of the potential is up to ", "0.003", "0.03",
          "warning: time_step: 0.03 tau is 7.6 times as long as this potential allows", 0.003},
         {scene, "\"time_step\": 0.003,", NULL, NULL,
-         "chosen: time step 0.015 ps, in which bonds take 4 of their own: the distributions of "
-         "bonds "
-         "and angles are to be right within 0.3 % of their variance",
+         "chosen: time step 0.015 ps, in which bonds take 4 of their own: beads move a fiftieth of",
          "0.006", "0.06",
          "warning: time_step: 0.06 ps is 8.1 times as long as bonds, angles and dihedrals allow if "
          "their distributions are to be right within 0.3 % of their variance, 0.0074 ps",

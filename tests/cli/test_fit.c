@@ -336,7 +336,7 @@ static void test_interrupted_fit_says_so_and_refuses_other_settings(void **state
     run_program_assert_refused(
         &result, "out", "another seed", 1,
         (const char *[]){"checkpoint.bin", "settings have changed", "for more iterations",
-                         "as \"start\" of the unknowns", "out/potential.tsv", NULL});
+                         "as \"start\" of unknowns.potential", "out/potential.tsv", NULL});
     char *used_now = temporary_folder_read("out/used.json");
     assert_string_equal(used, used_now);
     free(used);

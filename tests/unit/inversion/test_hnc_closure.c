@@ -75,41 +75,110 @@ static void test_hnc_closure_stays_finite_when_the_target_has_no_structure_facto
         assert_true(isfinite(indirect[k]));
 }
 
-/// g of hard spheres up to a range, before their oscillations end; of N of them it is too small by
-/// the factor 1 − S(0)/N, over N² pairs (J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675
-/// (1961)).
-static void check_hard_spheres(double eta, double range, double particles, double bound) {
-    enum { CELLS = 120 };
-    const struct rdf_bins cells = {0, range / CELLS, CELLS};
-    const double edge = cbrt(particles / hard_spheres_density(eta));
-    const struct box cube = {.dimensions = 3, .length = {edge, edge, edge}};
-    const struct composition spheres = {.types = 1, .count = {(int64_t)particles}};
-    const double finite = (1 - hard_spheres_compressibility(eta) / particles) / (1 - 1 / particles);
-    double g[CELLS], indirect[CELLS], largest = 0;
-    for (size_t k = 0; k < CELLS; k++)
-        g[k] = finite * (1 + hard_spheres_h(eta, mf_rdf_bins_centre(&cells, k)));
-    assert_ok(mf_hnc_closure(&(struct hnc_liquid){&cells, &cube, &spheres, NULL, 0}, g, indirect));
-    for (size_t k = 0; k < CELLS; k++) {
-        const double r = mf_rdf_bins_centre(&cells, k);
-        const double exact = hard_spheres_h(eta, r) - hard_spheres_c(eta, r);
-        if (r > 1 + 2 * cells.width) // the potential of the core is not sought
-            largest = fmax(largest, fabs(indirect[k] - exact));
-    }
-    print_message("eta %g, range %g, %g spheres: largest error %.4f\n", eta, range, particles,
-                  largest);
-    assert_true(largest < bound);
+enum { CELLS = 120, MANY = 450 };
+
+/// g of so many hard spheres, over N (N − 1)/2 pairs: over N²/2 it is too small by the factor
+/// 1 − S(0)/N (J. L. Lebowitz and J. K. Percus, Phys. Rev. 122, 1675 (1961)).
+static double finite_g(double eta, double particles, double r) {
+    return (1 - hard_spheres_compressibility(eta) / particles) / (1 - 1 / particles) *
+           (1 + hard_spheres_h(eta, r));
 }
+
+static struct box box_of(double eta, double particles) {
+    return mf_box_cube(particles / hard_spheres_density(eta));
+}
+
+/// How far h − c of hard spheres is off beyond the core, whose potential is not sought.
+static double farthest(const struct rdf_bins *cells, double eta, const double *indirect) {
+    double largest = 0;
+    for (size_t k = 0; k < cells->count; k++) {
+        const double r = mf_rdf_bins_centre(cells, k);
+        if (r > 1.04)
+            largest = fmax(largest, fabs(indirect[k] - hard_spheres_h(eta, r)));
+    }
+    return largest; // c is 0 there
+}
+
+/// g up to a range, before its oscillations end.
+static void check_hard_spheres(const struct rdf_bins *cells, double eta, double particles,
+                               double bound) {
+    const struct box cube = box_of(eta, particles);
+    const struct composition spheres = {.types = 1, .count = {(int64_t)particles}};
+    static double g[MANY], indirect[MANY];
+    for (size_t k = 0; k < cells->count; k++)
+        g[k] = finite_g(eta, particles, mf_rdf_bins_centre(cells, k));
+    assert_ok(mf_hnc_closure(&(struct hnc_liquid){cells, &cube, &spheres, NULL, 0}, g, indirect));
+    const double off = farthest(cells, eta, indirect);
+    print_message("eta %g, range %g, %zu bins, %g spheres: largest error %.4f\n", eta,
+                  mf_rdf_bins_range(cells), cells->count, particles, off);
+    assert_true(off < bound);
+}
+
+static const struct rdf_bins to_2 = {0, 2.0 / CELLS, CELLS};
+static const struct rdf_bins to_1_6 = {0, 1.6 / CELLS, CELLS};
 
 static void test_hnc_closure_knows_what_lies_beyond_the_range(void **state) {
     (void)state;
-    check_hard_spheres(0.3, 2, 1e12, 0.02);
-    check_hard_spheres(0.45, 1.6, 1e12, 0.15);
+    check_hard_spheres(&to_2, 0.3, 1e12, 0.01);
+    check_hard_spheres(&to_1_6, 0.45, 1e12, 0.15);
 }
 
 static void test_hnc_closure_knows_that_particles_are_few(void **state) {
     (void)state;
-    check_hard_spheres(0.3, 2, 200, 0.02);
-    check_hard_spheres(0.45, 1.6, 500, 0.15);
+    check_hard_spheres(&to_2, 0.3, 200, 0.01);
+    check_hard_spheres(&to_1_6, 0.45, 500, 0.15);
+}
+
+/// Also where the first bin is not at 0, and bins are so many that they are joined.
+static void test_hnc_closure_fills_the_core(void **state) {
+    (void)state;
+    check_hard_spheres(&(struct rdf_bins){0.5, 1.5 / CELLS, CELLS}, 0.3, 300, 0.01);
+    check_hard_spheres(&(struct rdf_bins){0.5, 1.5 / MANY, MANY}, 0.3, 300, 0.01);
+}
+
+/// Hard spheres of which some have another name: pairs of all names have the same g.
+static void check_names(int64_t first, int64_t second, double bound) {
+    static const double eta = 0.3;
+    const double particles = (double)(first + second);
+    const struct composition names = {.types = 2, .count = {first, second}, .name = {"A", "B"}};
+    const struct box cube = box_of(eta, particles);
+    static double g[3 * CELLS], indirect[3 * CELLS];
+    for (size_t n = 0; n < 3 * CELLS; n++)
+        g[n] = n < CELLS && first < 2
+                   ? 0
+                   : finite_g(eta, particles, mf_rdf_bins_centre(&to_2, n % CELLS));
+    assert_ok(mf_hnc_closure(&(struct hnc_liquid){&to_2, &cube, &names, NULL, 0}, g, indirect));
+    for (int pair = first < 2; pair < 3; pair++) {
+        const double off = farthest(&to_2, eta, indirect + pair * CELLS);
+        print_message("%lld and %lld, pair %d: largest error %.4f\n", (long long)first,
+                      (long long)second, pair, off);
+        assert_true(off < bound);
+    }
+}
+
+static void test_hnc_closure_of_few_with_another_name_is_that_of_all(void **state) {
+    (void)state;
+    check_names(60, 240, 0.01);
+    check_names(2, 298, 0.01);
+    check_names(1, 299, 0.01);
+}
+
+/// A level of g that is off by a per mille makes a ramp, which a softness bounds.
+static void test_hnc_closure_bounds_what_the_level_of_g_does(void **state) {
+    (void)state;
+    static const double eta = 0.45, particles = 1e12, level = 1.004;
+    const struct box cube = box_of(eta, particles);
+    const struct composition spheres = {.types = 1, .count = {(int64_t)particles}};
+    double g[CELLS], indirect[CELLS], off[2];
+    for (int soft = 0; soft < 2; soft++) {
+        for (size_t k = 0; k < CELLS; k++)
+            g[k] = level * finite_g(eta, particles, mf_rdf_bins_centre(&to_2, k));
+        assert_ok(mf_hnc_closure(
+            &(struct hnc_liquid){&to_2, &cube, &spheres, NULL, soft ? 1e-3 : 0}, g, indirect));
+        off[soft] = farthest(&to_2, eta, indirect);
+    }
+    print_message("off by %.3f, softly %.3f\n", off[0], off[1]);
+    assert_true(off[1] < 0.7 * off[0]);
 }
 
 static void test_hnc_closure_refuses_two_dimensions(void **state) {
@@ -129,6 +198,9 @@ int main(void) {
         cmocka_unit_test(test_hnc_closure_stays_finite_when_the_target_has_no_structure_factor),
         cmocka_unit_test(test_hnc_closure_knows_what_lies_beyond_the_range),
         cmocka_unit_test(test_hnc_closure_knows_that_particles_are_few),
+        cmocka_unit_test(test_hnc_closure_fills_the_core),
+        cmocka_unit_test(test_hnc_closure_of_few_with_another_name_is_that_of_all),
+        cmocka_unit_test(test_hnc_closure_bounds_what_the_level_of_g_does),
         cmocka_unit_test(test_hnc_closure_refuses_two_dimensions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

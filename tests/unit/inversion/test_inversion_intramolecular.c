@@ -98,7 +98,8 @@ static void test_inside_of_dimers_is_the_distribution_of_their_bonds(void **stat
     const struct inversion_state *own = made.inversion.state;
     double counts = 0, sum = 0, deviation;
     for (size_t k = 0; k < BINS; k++) {
-        const double here = own->inside.g[k] * own->target.ideal[k];
+        // Over N²/2 pairs, where those of an ideal gas are N (N − 1)/2.
+        const double here = own->inside.g[k] * own->target.ideal[k] / (1 - 0.5 / DIMERS);
         counts += here;
         sum += here * mf_rdf_bins_centre(&made.problem.targets.bins, k);
     }

@@ -105,22 +105,29 @@ static void test_inversion_start_is_the_target_as_it_stands_without_errors(void 
     clear(&made);
 }
 
-static void test_inversion_start_is_poor_when_its_samples_are_of_no_use(void **state) {
+static void test_inversion_start_is_poor_when_it_is_of_no_use_or_leads_away(void **state) {
     (void)state;
     struct made made;
     make(&made, INVERSION_FROM_HNC);
     assert_ok(mf_inversion_create(&made.inversion, &mf_imc, &made.problem, &made.settings));
-    assert_false(mf_inversion_start_is_poor(&made.inversion));
+    const struct inversion *inversion = &made.inversion;
+    struct inversion_progress *progress = &made.inversion.course.progress;
+    assert_false(mf_inversion_start_is_poor(inversion, true));
     made.inversion.assessment.useless = true;
-    assert_true(mf_inversion_start_is_poor(&made.inversion));
-    made.inversion.course.progress.second_start = true; // it is the other one
-    assert_false(mf_inversion_start_is_poor(&made.inversion));
-    made.inversion.course.progress.second_start = false;
-    made.inversion.course.progress.iteration = 1;
-    assert_false(mf_inversion_start_is_poor(&made.inversion));
-    made.inversion.course.progress.iteration = 0;
+    assert_true(mf_inversion_start_is_poor(inversion, false));
+    progress->iteration = 1; // a step to where samples do not settle says nothing of the start
+    assert_false(mf_inversion_start_is_poor(inversion, false));
+    made.inversion.assessment.useless = false;
+    assert_true(mf_inversion_start_is_poor(inversion, false));
+    assert_false(mf_inversion_start_is_poor(inversion, true));
+    progress->second_start = true; // it is the other one
+    assert_false(mf_inversion_start_is_poor(inversion, false));
+    progress->second_start = false;
+    progress->iteration = 2;
+    assert_false(mf_inversion_start_is_poor(inversion, false));
+    progress->iteration = 1;
     made.inversion.parameters.start = INVERSION_FROM_MEAN_FORCE;
-    assert_false(mf_inversion_start_is_poor(&made.inversion));
+    assert_false(mf_inversion_start_is_poor(inversion, false));
     clear(&made);
 }
 
@@ -144,8 +151,8 @@ static void sample(struct inversion_state *state, uint32_t seed) {
     free(numbers);
 }
 
-/// A start is left when its samples do not settle; where the other one is much farther from the
-/// target the fit goes back to it.
+/// A start is left when its samples do not settle, or its first step is too long; where the other
+/// one is much farther from the target the fit goes back to it.
 static void test_inversion_goes_back_to_a_start_that_was_much_nearer(void **state) {
     static const double first = 0.03, second[] = {0.1, 1.9};
     (void)state;
@@ -378,7 +385,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_start_is_smooth_within_the_errors_of_the_target),
         cmocka_unit_test(test_inversion_start_is_the_target_as_it_stands_without_errors),
-        cmocka_unit_test(test_inversion_start_is_poor_when_its_samples_are_of_no_use),
+        cmocka_unit_test(test_inversion_start_is_poor_when_it_is_of_no_use_or_leads_away),
         cmocka_unit_test(test_inversion_band_widens_when_more_than_noise_is_left),
         cmocka_unit_test(test_inversion_band_counts_the_ramp_that_is_asked_for),
         cmocka_unit_test(test_inversion_goes_back_to_a_start_that_was_much_nearer),
