@@ -199,9 +199,11 @@ bool mf_inversion_start_has_other(const struct inversion *inversion,
 }
 
 bool mf_inversion_start_is_poor(const struct inversion *inversion, bool kept) {
-    const bool led_away = inversion->course.progress.iteration == 1 && !kept;
+    const struct inversion_progress *progress = &inversion->course.progress;
+    const bool useless = inversion->assessment.useless;
+    const bool led_away = !kept && !useless && progress->damping < 1;
     return mf_inversion_start_has_other(inversion, inversion->state) &&
-           inversion->assessment.useless != led_away;
+           (progress->iteration == 0 ? useless : led_away);
 }
 
 enum status mf_inversion_start_again(struct inversion_state *state, double *phi) {

@@ -22,7 +22,8 @@ class Damping(unittest.TestCase):
         make_folder(self.folder)
         self.served = self.name = None
         fit = water_fit(4)
-        fit["method"]["samples"] = 400 # few would be noise, by which a fit damps its steps itself
+        # Few samples would be noise, by which a fit damps its steps itself; from nearer there would be no steps left.
+        fit["method"].update(samples=400, start="mean-force")
         self.write("run.json", {**fit, "verification": {"replicas": 2, "equilibration": 50, "samples": 5, "every": 10}})
 
     def tearDown(self):
