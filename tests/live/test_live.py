@@ -309,7 +309,7 @@ class Page(PageTest):
             self.begin("live", name)
             self.at("tab-settings").click()
             self.wait(lambda units=units: all(unit in self.text("settings") for unit in units))
-            field = self.browser.find_element("css selector", "#settings input[data-name='time_step']")
+            field = self.browser.find_element("css selector", "#settings input[data-name='temperature']")
             self.assertEqual(field.get_attribute("placeholder") == "", name != "scene.json")
             self.browser.quit()
             self.served.end()
