@@ -29,9 +29,10 @@ const struct field mf_scene_fields[] = {
     {"temperature", FIELD_NUMBER, MEMBER(temperature), .initial = 1, .minimum = 0,
      .maximum = DBL_MAX, .unit = "T_0",
      .help = "temperature; 0 only for dynamics without velocities"},
-    {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = NAN, .minimum = FIELD_ABOVE_ZERO,
+    {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "tau",
-     .help = "time step; default: chosen if needed, else 0.01; unused by \"monte-carlo\""},
+     .help = "time step; where accuracy asks for another than the default, that is chosen; unused "
+             "by \"monte-carlo\""},
     {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda", .help = "skin of the neighbour list; 0: chosen"},
     {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,
@@ -76,17 +77,16 @@ static void check_omega(const struct scene *scene, struct json_object *object) {
 }
 
 static void read_top(struct scene *scene, struct json_object *object) {
-    static const double time_step = 0.01; // where accuracy asks for none (scene_step.h)
     struct top top;
-    mf_json_fields(object, mf_scene_fields, &top);
-    scene->given.time_step = !isnan(top.time_step);
+    const uint64_t given = mf_json_fields(object, mf_scene_fields, &top);
+    scene->given.time_step = given & mf_fields_bit(mf_scene_fields, "time_step");
     struct simulation_setup *setup = &scene->setup;
     setup->box.dimensions = (int)top.dimensions;
     for (int d = 0; d < 3; d++)
         setup->box.length[d] = d < top.dimensions ? top.box[d] : 1;
     check_box(scene, object, &top);
     setup->temperature = top.temperature;
-    setup->time_step = scene->given.time_step ? top.time_step : time_step;
+    setup->time_step = top.time_step;
     setup->skin = top.skin;
     setup->temperature_limit = top.temperature_limit;
     setup->precision = top.precision;

@@ -132,12 +132,12 @@ static void test_describe_of_a_path_is_what_stands_there(void **state) {
     assert_contains(result.err, "measure");
 }
 
-/// A default beside "else chosen" would be said to be taken.
 static void test_describe_says_once_what_a_missing_time_step_is(void **state) {
     (void)state;
     RUN_PROGRAM(&result, "describe", "scene.time_step");
-    assert_contains(result.out, "time step; default: chosen if needed, else 0.01");
-    assert_contains(result.out, "number, default none");
+    assert_contains(result.out,
+                    "time step; where accuracy asks for another than the default, that is");
+    assert_contains(result.out, "number, default 0.01");
 }
 
 static void test_describe_of_an_observable_names_the_target_of_that_name(void **state) {

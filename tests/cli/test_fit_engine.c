@@ -48,7 +48,7 @@ static const char engine[] =
     "    os.remove(trouble)\n"
     "    sys.exit('the licence has expired')\n"
     "scene = {'seed': asked['seed'], 'box': asked['box'], 'particles': {'count': 250},\n"
-    "    'time_step': 0.04 if said == 'hot' else 0.005,\n"
+    "    'time_step': 0.005, 'temperature': 1.4 if said == 'hot' else 1,\n"
     "    'conservative': {'law': 'table', 'file': 'potential.tsv'},\n"
     "    'dissipative': {'law': 'power', 'sigma': 3},\n"
     "    'measure': {'equilibration': asked['equilibration'] + 20, 'samples': asked['frames'],\n"
