@@ -31,7 +31,7 @@ const struct field mf_scene_fields[] = {
      .help = "temperature; 0 only for dynamics without velocities"},
     {"time_step", FIELD_NUMBER, MEMBER(time_step), .initial = 0.01, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "tau",
-     .help = "time step; another is chosen if needed; unused by \"monte-carlo\""},
+     .help = "time step; another chosen if needed; unused by \"monte-carlo\""},
     {"skin", FIELD_NUMBER, MEMBER(skin), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "lambda", .help = "skin of the neighbour list; 0: chosen"},
     {"temperature_limit", FIELD_NUMBER, MEMBER(temperature_limit), .initial = 20, .minimum = 1,

@@ -135,7 +135,7 @@ static void test_describe_of_a_path_is_what_stands_there(void **state) {
 static void test_describe_says_once_what_a_missing_time_step_is(void **state) {
     (void)state;
     RUN_PROGRAM(&result, "describe", "scene.time_step");
-    assert_contains(result.out, "time step; another is chosen if needed");
+    assert_contains(result.out, "time step; another chosen if needed");
     assert_contains(result.out, "number, default 0.01");
 }
 
