@@ -9,9 +9,9 @@ struct hnc_liquid {
     const struct rdf_bins *bins;
     const struct box *box;
     const struct composition *composition;
-    const double
-        *inside;     ///< counts of the pairs that molecules exclude over those of an ideal gas,
-                     ///< as g has those of all others, shape [pairs, bins.count]; NULL: none
+    const double *inside; ///< counts of the pairs that molecules exclude over those of an ideal gas
+                          ///< of N_a²/2 pairs of like beads, where g has N_a (N_a − 1)/2 of all
+                          ///< others, shape [pairs, bins.count]; NULL: none
     double softness; ///< h may be missed by this times g² c: noise, and a level of g that is known
                      ///< within so much, would else become a ramp of several k_B T; 0: not at all
 };

@@ -265,8 +265,6 @@ enum status mf_inversion_course_go_on(struct inversion *inversion, bool kept) {
         mf_inversion_take_step(inversion);
         return STATUS_OK;
     }
-    if (!kept)
-        progress->first_start =
-            mf_targets_error(&inversion->problem->targets, progress->best.distance);
+    progress->first_start = mf_targets_error(&inversion->problem->targets, progress->best.distance);
     return begin_again(inversion, mf_inversion_start_again);
 }

@@ -28,7 +28,6 @@ static enum status allocate(struct ornstein_zernike *oz) {
     TRY_ARRAY(oz->edge, oz->cells + 1);
     TRY_ARRAY(oz->volume, oz->cells);
     TRY_ARRAY(oz->transform, oz->waves * oz->cells);
-    TRY_ARRAY(oz->q, oz->waves);
     TRY_ARRAY(oz->weight, oz->waves);
     TRY_ARRAY(oz->intramolecular, oz->waves * oz->types * oz->types);
     TRY_ARRAY(oz->inverse, oz->waves * oz->types * oz->types);
@@ -52,7 +51,7 @@ enum status mf_ornstein_zernike_init(struct ornstein_zernike *oz, const double *
     for (size_t k = 0; k < cells; k++)
         oz->volume[k] = 4 * M_PI / 3 * (pow(edge[k + 1], 3) - pow(edge[k], 3));
     for (size_t n = 0; n < oz->waves; n++) {
-        const double q = oz->q[n] = (double)(n + 1) * spacing;
+        const double q = (double)(n + 1) * spacing;
         oz->weight[n] = q * q * spacing / (2 * M_PI * M_PI);
         for (size_t k = 0; k < cells; k++)
             oz->transform[n * cells + k] =
@@ -69,7 +68,6 @@ void mf_ornstein_zernike_clear(struct ornstein_zernike *oz) {
     mf_memory_free(oz->edge);
     mf_memory_free(oz->volume);
     mf_memory_free(oz->transform);
-    mf_memory_free(oz->q);
     mf_memory_free(oz->weight);
     mf_memory_free(oz->intramolecular);
     mf_memory_free(oz->inverse);

@@ -17,10 +17,10 @@ struct ornstein_zernike {
     struct composition composition;
     double density[COMPOSITION_MAX_TYPES]; ///< of each type [1/λ³]
     size_t types, pairs, cells, waves;
-    double *edge;       ///< shape [cells + 1] [λ]
-    double *volume;     ///< of the shells, shape [cells] [λ³]
-    double *transform;  ///< of 1 in a cell, at each wave: shape [waves, cells]
-    double *q, *weight; ///< of each wave, and q² dq/2π², shape [waves]
+    double *edge;      ///< shape [cells + 1] [λ]
+    double *volume;    ///< of the shells, shape [cells] [λ³]
+    double *transform; ///< of 1 in a cell, at each wave: shape [waves, cells]
+    double *weight;    ///< q² dq/2π² of each wave, shape [waves]
     double
         *intramolecular; ///< Ω of each wave, shape [waves, types, types], 1 at first: single beads
     double *inverse;     ///< Ω⁻¹
