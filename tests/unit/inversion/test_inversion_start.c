@@ -121,6 +121,9 @@ static void test_inversion_start_is_poor_when_it_is_of_no_use_or_leads_away(void
     assert_false(mf_inversion_start_is_poor(inversion, false)); // another step is in reserve
     progress->damping = 0.5;
     assert_true(mf_inversion_start_is_poor(inversion, false));
+    made.inversion.assessment.useless = true;
+    assert_false(mf_inversion_start_is_poor(inversion, false));
+    made.inversion.assessment.useless = false;
     assert_false(mf_inversion_start_is_poor(inversion, true));
     progress->second_start = true; // it is the other one
     assert_false(mf_inversion_start_is_poor(inversion, false));
