@@ -17,43 +17,50 @@
 // concentrations change by beads that go through the box; beads of about the same size take each
 // other's place in one move. D. Gazzillo and G. Pastore, Chem. Phys. Lett. 159, 388 (1989).
 
-/// r² of two particles, from the fractions that the kernels read.
-static double square_distance(const struct particles *particles, size_t k, size_t l) {
-    static const double unit = 1.0 / 4294967296.0; // 2⁻³² of the box
-    double square = 0;
-    for (int d = 0; d < particles->box.dimensions; d++) {
-        const double x =
-            unit * particles->box.length[d] *
-            box_fraction_difference(particles->fraction[d][k], particles->fraction[d][l]);
-        square += x * x;
-    }
-    return square;
+/// Beads for each exchange that a sweep tries, and where they are hardly accepted. An exchange
+/// costs as much as 1.6 moves. One in 4 beads instead of in 50 makes concentrations forget in a
+/// half to a third of the time, with acceptances of 15, 13, 1.3 and 0.08 % (lab/samplers.md).
+enum { BEADS_BY_EXCHANGE = 4, BEADS_BY_USELESS_EXCHANGE = 50 };
+
+/// Sweeps in which a bead of the rarest type is to change places once, else beads go faster by
+/// themselves.
+static const double longest_wait = 1000;
+
+static int64_t rarest(const struct composition *composition) {
+    int64_t least = INT64_MAX;
+    for (int type = 0; type < composition->types; type++)
+        if (composition->count[type] > 0 && composition->count[type] < least)
+            least = composition->count[type];
+    return least;
 }
 
-/// Change of Φ if particle k were of type `to`; `other` changes at the same time, and what the two
-/// have with each other does not.
-static double change_of_place(const struct metropolis *metropolis, size_t k, size_t other, int to) {
-    const struct particles *particles = &metropolis->particles;
+static uint32_t one_in(const struct metropolis *metropolis, int beads) {
+    return 1 + (uint32_t)metropolis->particles.count / (uint32_t)beads;
+}
+
+void mf_metropolis_exchange(struct metropolis *metropolis) {
+    if (composition_is_mixed(&metropolis->law.composition))
+        metropolis->exchanges = one_in(metropolis, BEADS_BY_EXCHANGE);
+    metropolis->exchanges_accepted = metropolis->exchanges_tried = 0;
+}
+
+/// After an equilibration that has tried many. One more that was accepted is the benefit of the
+/// doubt.
+static void tune_exchanges(struct metropolis *metropolis) {
+    const double accepted = (double)metropolis->exchanges_accepted + 1;
+    const double in_a_sweep =
+        accepted / (double)metropolis->exchanges_tried * metropolis->exchanges;
+    if (in_a_sweep * longest_wait < (double)rarest(&metropolis->law.composition))
+        metropolis->exchanges = one_in(metropolis, BEADS_BY_USELESS_EXCHANGE);
+}
+
+/// Change of Φ if particle k were of the type of another one; what the two have with each other
+/// stays as it is when they change places.
+static double change_of_type(const struct metropolis *metropolis, size_t k, size_t other) {
     const struct neighbours *neighbours = &metropolis->neighbours;
-    const struct composition *composition = &metropolis->law.composition;
-    const struct table *potential = metropolis->law.potential;
-    const int from = mf_composition_type(composition, particles->id[k]);
-    const double cutoff2 = potential->cutoff * potential->cutoff;
-    double change = 0;
-    for (size_t n = neighbours->start[k]; n < neighbours->stop[k]; n++) {
-        const size_t l = (size_t)neighbours->list[n];
-        const double square = square_distance(particles, k, l);
-        if (l == other || square >= cutoff2)
-            continue;
-        const int type = mf_composition_type(composition, particles->id[l]);
-        double before, after;
-        mf_table_evaluate_pair(potential, mf_composition_pair(composition, from, type),
-                               sqrt(square), &before, NULL, NULL);
-        mf_table_evaluate_pair(potential, mf_composition_pair(composition, to, type), sqrt(square),
-                               &after, NULL, NULL);
-        change += after - before;
-    }
-    return change;
+    return mf_move_type_change(&metropolis->law, &metropolis->particles, k, other,
+                               neighbours->list + neighbours->start[k],
+                               neighbours->stop[k] - neighbours->start[k]);
 }
 
 /// Two different types, each pair of them as likely.
@@ -93,11 +100,13 @@ static void try_exchange(struct metropolis *metropolis, uint32_t number, uint32_
     const uint32_t id[2] = {draw_bead(composition, type[0], mf_rng_uniform(random.word[1], 0)),
                             draw_bead(composition, type[1], mf_rng_uniform(random.word[2], 0))};
     const size_t k = place[id[0]], l = place[id[1]];
-    const double change =
-        change_of_place(metropolis, k, l, type[1]) + change_of_place(metropolis, l, k, type[0]);
+    const double change = change_of_type(metropolis, k, l) + change_of_type(metropolis, l, k);
+    metropolis->exchanges_tried++;
     // Written so that a NaN is refused.
-    if (mf_rng_uniform(random.word[3], 0) < exp(-change / metropolis->law.temperature))
-        exchange(&metropolis->particles, place, id);
+    if (!(mf_rng_uniform(random.word[3], 0) < exp(-change / metropolis->law.temperature)))
+        return;
+    metropolis->exchanges_accepted++;
+    exchange(&metropolis->particles, place, id);
 }
 
 /// The exchanges of a sweep, after its moves of beads, whose list of neighbours is used.
@@ -383,8 +392,12 @@ enum status mf_metropolis_tune(struct metropolis *metropolis) {
 enum status mf_metropolis_equilibrate(struct metropolis *metropolis, uint32_t sweeps) {
     keep_order(metropolis);
     reset_counts(metropolis);
+    if (metropolis->exchanges > 0)
+        mf_metropolis_exchange(metropolis);
     for (uint32_t s = 0; s < sweeps; s++)
         TRY(mf_metropolis_tune(metropolis));
+    if (metropolis->exchanges_tried > 0)
+        tune_exchanges(metropolis);
     return STATUS_OK;
 }
 

@@ -27,7 +27,8 @@ struct metropolis {
     const atomic_bool *cancel; ///< stops the sweeps once it is set, or NULL; borrowed
     uint32_t sweep;            ///< sweeps so far: the counter of the random numbers
     uint64_t accepted, tried;  ///< moves of beads
-    uint32_t exchanges;        ///< tried in a sweep of a mixture (dynamics/exchange.h); 0 at first
+    uint32_t exchanges;        ///< of beads of different types, tried in a sweep; 0 at first
+    uint64_t exchanges_accepted, exchanges_tried; ///< in the present equilibration
 };
 
 /// How far a particle may go before the list of neighbours is looked after [λ].
@@ -76,6 +77,11 @@ enum status mf_metropolis_scatter(struct metropolis *metropolis) MUST_USE;
 /// One sweep, after which the step sizes of its moves are changed towards 40 % accepted. The tally
 /// starts again. Fails: NO_MEMORY, INTERRUPTED.
 enum status mf_metropolis_tune(struct metropolis *metropolis) MUST_USE;
+
+/// Let sweeps also exchange beads of different types. How many they try, one in four beads or
+/// hardly any, follows from how many are accepted in each equilibration. Without effect where all
+/// beads are of one type.
+void mf_metropolis_exchange(struct metropolis *metropolis);
 
 /// Sweeps of mf_metropolis_tune. They and all after them move the
 /// particles in the order of the arrays as it is now: one by one through space, which takes a

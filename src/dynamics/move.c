@@ -27,6 +27,11 @@ double mf_move_energy_change(const struct pair_law *law, const struct particles 
     return choose(law, particles)->energy_change(law, particles, particle, list, count, to);
 }
 
+double mf_move_type_change(const struct pair_law *law, const struct particles *particles,
+                           size_t particle, size_t other, const int32_t *list, size_t count) {
+    return choose(law, particles)->type_change(law, particles, particle, other, list, count);
+}
+
 void mf_move_count_pairs(const struct pair_law *law, const struct particles *particles,
                          const struct neighbours *neighbours, struct pair_sums *sums) {
     choose(law, particles)->count_pairs(law, particles, neighbours, sums);

@@ -15,6 +15,12 @@ double mf_move_energy_change(const struct pair_law *law, const struct particles 
                              size_t particle, const int32_t *list, size_t count,
                              const int32_t to[3]);
 
+/// Change of potential energy if a bead of a mixture were of the type of another one, where it is,
+/// without what it has with that one; precision and NaN as above.
+/// Tested: test_move.
+double mf_move_type_change(const struct pair_law *law, const struct particles *particles,
+                           size_t particle, size_t other, const int32_t *list, size_t count);
+
 /// Add the pairs nearer than the potential's cutoff to the law's histogram, of one part, and sum Φ
 /// and r·F.
 /// @param[in] neighbours  a full list

@@ -8,6 +8,8 @@ struct move_kernels {
     double (*energy_change)(const struct pair_law *law, const struct particles *particles,
                             size_t particle, const int32_t *list, size_t count,
                             const int32_t to[3]);
+    double (*type_change)(const struct pair_law *law, const struct particles *particles,
+                          size_t particle, size_t other, const int32_t *list, size_t count);
     void (*count_pairs)(const struct pair_law *law, const struct particles *particles,
                         const struct neighbours *neighbours, struct pair_sums *sums);
 };

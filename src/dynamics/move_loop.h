@@ -63,12 +63,18 @@ LANES_INLINE void move_append(struct move_batch *batch, unsigned mask, lanes_rea
 }
 
 /// Kinds of the pairs of a particle with those of a vector.
-LANES_INLINE lanes_int move_kinds(const struct move_scene *scene, size_t self,
+LANES_INLINE lanes_int move_kinds(const struct move_scene *scene, uint32_t id,
                                   const struct lanes_record *place, const bool mixed) {
     if (!mixed)
         return lanes_all_int(0);
-    return pair_kind(&scene->mixture, lanes_all_int((int32_t)scene->place[self].id),
-                     (lanes_int)place->word[3]);
+    return pair_kind(&scene->mixture, lanes_all_int((int32_t)id), (lanes_int)place->word[3]);
+}
+
+/// The squares of those lanes that are wanted; the others count as beyond the cutoff.
+LANES_INLINE lanes_real move_only(const struct move_scene *scene, lanes_int wanted,
+                                  lanes_real square) {
+    const lanes_int far = (lanes_int)lanes_all(4 * scene->cutoff2);
+    return (lanes_real)((wanted & (lanes_int)square) | (~wanted & far));
 }
 
 /// The bits of those lanes of a vector, from entry k on, that are on a list with `count` entries.
@@ -136,7 +142,7 @@ LANES_INLINE double move_change(const struct pair_law *law, const struct particl
         const unsigned listed = move_listed(k, count);
         const lanes_real here = move_squares(&scene, from, &place, dim);
         const lanes_real there = move_squares(&scene, to, &place, dim);
-        const lanes_int kinds = move_kinds(&scene, self, &place, mixed);
+        const lanes_int kinds = move_kinds(&scene, scene.place[self].id, &place, mixed);
         move_append(&before, lanes_below(here, cutoff2) & listed, here, kinds, mixed);
         move_append(&after, lanes_below(there, cutoff2) & listed, there, kinds, mixed);
         if (before.count > MOVE_BATCH - LANES)
@@ -146,6 +152,36 @@ LANES_INLINE double move_change(const struct pair_law *law, const struct particl
     }
     move_sums(&before, &scene, &energy_before, NULL, mixed);
     move_sums(&after, &scene, &energy_after, NULL, mixed);
+    return (double)lanes_sum(energy_after - energy_before);
+}
+
+LANES_INLINE double move_change_type(const struct pair_law *law, const struct particles *particles,
+                                     size_t self, size_t other, const int32_t *list, size_t count,
+                                     const int dim) {
+    const struct move_scene scene = move_prepare(law, particles, true);
+    const uint32_t id = scene.place[self].id, as = scene.place[other].id;
+    const lanes_real cutoff2 = lanes_all(scene.cutoff2);
+    lanes_real energy_before = lanes_all(0), energy_after = lanes_all(0);
+    struct move_batch before, after;
+    before.count = after.count = 0;
+    for (size_t k = 0; k < count; k += LANES) {
+        int32_t entry[LANES];
+        const lanes_int entries = move_entries(list, k, count, self);
+        lanes_store_int(entry, entries);
+        const struct lanes_record place = lanes_load_records(scene.place, entry);
+        const lanes_real square = move_squares(&scene, scene.place[self].fraction, &place, dim);
+        const lanes_real wanted =
+            move_only(&scene, entries != lanes_all_int((int32_t)other), square);
+        const unsigned near = lanes_below(wanted, cutoff2) & move_listed(k, count);
+        move_append(&before, near, square, move_kinds(&scene, id, &place, true), true);
+        move_append(&after, near, square, move_kinds(&scene, as, &place, true), true);
+        if (before.count > MOVE_BATCH - LANES) {
+            move_sums(&before, &scene, &energy_before, NULL, true);
+            move_sums(&after, &scene, &energy_after, NULL, true);
+        }
+    }
+    move_sums(&before, &scene, &energy_before, NULL, true);
+    move_sums(&after, &scene, &energy_after, NULL, true);
     return (double)lanes_sum(energy_after - energy_before);
 }
 
@@ -188,12 +224,10 @@ LANES_INLINE void move_count(const struct pair_law *law, const struct particles 
             lanes_store_int(entry, entries);
             const struct lanes_record place = lanes_load_records(scene.place, entry);
             const lanes_real square = move_squares(&scene, scene.place[self].fraction, &place, dim);
-            // Of the others the distance counts as beyond the cutoff.
-            const lanes_int once = entries > lanes_all_int((int32_t)self);
-            const lanes_int far = (lanes_int)lanes_all(4 * scene.cutoff2);
-            const lanes_real wanted = (lanes_real)((once & (lanes_int)square) | (~once & far));
+            const lanes_real wanted =
+                move_only(&scene, entries > lanes_all_int((int32_t)self), square);
             move_append(&batch, lanes_below(wanted, lanes_all(scene.cutoff2)), square,
-                        move_kinds(&scene, self, &place, mixed), mixed);
+                        move_kinds(&scene, scene.place[self].id, &place, mixed), mixed);
             if (batch.count > MOVE_BATCH - LANES) {
                 move_histogram(&batch, &scene, mixed);
                 move_sums(&batch, &scene, &energy, &virial, mixed);
@@ -211,6 +245,11 @@ LANES_INLINE void move_count(const struct pair_law *law, const struct particles 
                        size_t particle, const int32_t *list, size_t count, const int32_t to[3]) {  \
         return move_change(law, particles, particle, list, count, to, dim, mixed);                 \
     }
+#define MOVE_CHANGE_TYPE(name, dim)                                                                \
+    static double name(const struct pair_law *law, const struct particles *particles,              \
+                       size_t particle, size_t other, const int32_t *list, size_t count) {         \
+        return move_change_type(law, particles, particle, other, list, count, dim);                \
+    }
 #define MOVE_COUNT(name, dim, mixed)                                                               \
     static void name(const struct pair_law *law, const struct particles *particles,                \
                      const struct neighbours *neighbours, struct pair_sums *sums) {                \
@@ -223,10 +262,14 @@ LANES_INLINE void move_count(const struct pair_law *law, const struct particles 
     MOVE_CHANGE(set##_change_2d_mixed, 2, true)                                                    \
     MOVE_CHANGE(set##_change_3d, 3, false)                                                         \
     MOVE_CHANGE(set##_change_3d_mixed, 3, true)                                                    \
+    MOVE_CHANGE_TYPE(set##_change_type_2d, 2)                                                      \
+    MOVE_CHANGE_TYPE(set##_change_type_3d, 3)                                                      \
     MOVE_COUNT(set##_count_2d, 2, false)                                                           \
     MOVE_COUNT(set##_count_2d_mixed, 2, true)                                                      \
     MOVE_COUNT(set##_count_3d, 3, false)                                                           \
     MOVE_COUNT(set##_count_3d_mixed, 3, true)                                                      \
     const struct move_kernels set[2][2] = {                                                        \
-        {{set##_change_2d, set##_count_2d}, {set##_change_2d_mixed, set##_count_2d_mixed}},        \
-        {{set##_change_3d, set##_count_3d}, {set##_change_3d_mixed, set##_count_3d_mixed}}};
+        {{set##_change_2d, set##_change_type_2d, set##_count_2d},                                  \
+         {set##_change_2d_mixed, set##_change_type_2d, set##_count_2d_mixed}},                     \
+        {{set##_change_3d, set##_change_type_3d, set##_count_3d},                                  \
+         {set##_change_3d_mixed, set##_change_type_3d, set##_count_3d_mixed}}};

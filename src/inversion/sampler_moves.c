@@ -6,9 +6,6 @@
 
 #include <string.h>
 
-/// Beads of a mixture for each exchange that a sweep tries.
-enum { BEADS_BY_EXCHANGE = 50 };
-
 struct moves {
     struct metropolis chain;
     struct pair_histogram histogram; ///< of the chain's configuration
@@ -31,9 +28,8 @@ static enum status init(void *own, const struct sampler_system *system,
                            system->temperature, system->seed));
     chain->cancel = system->cancel;
     chain->bias = system->bias;
-    if (composition_is_mixed(system->composition) && system->molecules == NULL)
-        chain->exchanges =
-            1 + (uint32_t)mf_composition_particles(system->composition) / BEADS_BY_EXCHANGE;
+    if (system->molecules == NULL)
+        mf_metropolis_exchange(chain);
     if (system->molecules == NULL && system->bias.tilt != 0) {
         mf_placement_tilt(&chain->particles, system->bias.tilt, system->seed);
         TRY(mf_metropolis_refresh(chain));
@@ -76,6 +72,7 @@ static size_t spans(void *own, struct memory_span *span) {
     size_t n = mf_sampler_place_spans(&chain->particles, span);
     span[n++] = (struct memory_span){&chain->step, sizeof chain->step};
     span[n++] = (struct memory_span){&chain->sweep, sizeof chain->sweep};
+    span[n++] = (struct memory_span){&chain->exchanges, sizeof chain->exchanges};
     if (chain->molecules.molecules)
         span[n++] = (struct memory_span){chain->molecules.tally, sizeof chain->molecules.tally};
     return n;

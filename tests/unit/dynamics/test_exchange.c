@@ -100,9 +100,52 @@ static void test_exchanges_share_out_places_as_boltzmanns_factor_says(void **sta
     assert_true(largest < 0.6); // several ways matter
 }
 
+/// Beads of two types in a box, with Φ of A-A, A-B and B-B.
+static void equilibrate(struct metropolis *metropolis, struct table *potential,
+                        const double strength[PAIRS], const double range[PAIRS]) {
+    const struct composition composition = {.types = 2, .count = {180, 20}, .name = {"A", "B"}};
+    struct table table[PAIRS];
+    for (int pair = 0; pair < PAIRS; pair++) {
+        struct formula_soft_repulsion_parameters soft = {strength[pair], range[pair]};
+        const struct curve curve = {&mf_formula_soft_repulsion, &soft};
+        assert_ok(mf_table_init_potential(&table[pair], &curve));
+    }
+    assert_ok(mf_table_stack(potential, table, PAIRS));
+    for (int pair = 0; pair < PAIRS; pair++)
+        mf_table_clear(&table[pair]);
+    assert_ok(mf_metropolis_init(metropolis, &(struct box){3, {5.85, 5.85, 5.85}}, &composition,
+                                 potential, 1, 7));
+    mf_metropolis_exchange(metropolis);
+    // From a lattice, where beads overlap, some are accepted of any kind.
+    for (int times = 0; times < 2; times++)
+        assert_ok(mf_metropolis_equilibrate(metropolis, 200));
+}
+
+/// Beads of one size take each other's place; hard ones in the holes of others half as large never
+/// do, and are hardly tried.
+static void test_exchanges_are_tried_where_some_are_accepted(void **state) {
+    (void)state;
+    static const double equal[PAIRS] = {25, 27, 25}, range[PAIRS] = {1, 1, 1};
+    static const double hard[PAIRS] = {2000, 2000, 2000}, unlike[PAIRS] = {0.9, 1.4, 1.9};
+    struct metropolis metropolis;
+    struct table potential;
+    equilibrate(&metropolis, &potential, equal, range);
+    assert_int_equal(metropolis.exchanges, 51); // one in four of 200 beads
+    mf_metropolis_clear(&metropolis);
+    mf_table_clear(&potential);
+    equilibrate(&metropolis, &potential, hard, unlike);
+    assert_int_equal(metropolis.exchanges, 5); // one in fifty
+    // The next equilibration asks again.
+    assert_ok(mf_metropolis_equilibrate(&metropolis, 1));
+    assert_true(metropolis.exchanges_tried == 51);
+    mf_metropolis_clear(&metropolis);
+    mf_table_clear(&potential);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_exchanges_share_out_places_as_boltzmanns_factor_says),
+        cmocka_unit_test(test_exchanges_are_tried_where_some_are_accepted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -65,6 +65,50 @@ static void check_changes(const struct metropolis *metropolis) {
     assert_true(largest < energy_tolerance);
 }
 
+/// Σ_j Φ of a particle where it is, as if it had the id of another one, without that one.
+static double energy_as(const struct metropolis *metropolis, size_t self, size_t other,
+                        uint32_t id) {
+    const struct particles *particles = &metropolis->particles;
+    double sum = 0;
+    for (size_t j = 0; j < particles->count; j++) {
+        double square = 0, value;
+        for (int d = 0; d < particles->box.dimensions; d++)
+            square += pow(box_nearest(particles->position[d][self] - particles->position[d][j],
+                                      particles->box.length[d]),
+                          2);
+        if (j == self || j == other || sqrt(square) >= metropolis->law.potential->cutoff)
+            continue;
+        const int pair =
+            mf_composition_pair_of_ids(&metropolis->law.composition, id, particles->id[j]);
+        mf_table_evaluate_pair(metropolis->law.potential, pair, sqrt(square), &value, NULL, NULL);
+        sum += value;
+    }
+    return sum;
+}
+
+/// Each with one that is far away, and with its nearest on the list, which does not count.
+static void check_type_changes(const struct metropolis *metropolis) {
+    const struct particles *particles = &metropolis->particles;
+    const struct neighbours *neighbours = &metropolis->neighbours;
+    double largest = 0;
+    for (size_t k = 0; k < COUNT; k++) {
+        const int32_t *list = neighbours->list + neighbours->start[k];
+        const size_t count = neighbours->stop[k] - neighbours->start[k];
+        for (size_t n = 0; n <= count; n++) {
+            const size_t other = n < count ? (size_t)list[n] : (k + COUNT / 2) % COUNT;
+            const double before = energy_as(metropolis, k, other, particles->id[k]);
+            const double after = energy_as(metropolis, k, other, particles->id[other]);
+            const double fast =
+                mf_move_type_change(&metropolis->law, particles, k, other, list, count);
+            const double scale = fmax(1, 0.1 * (fabs(before) + fabs(after)));
+            largest = fmax(largest, fabs(fast - (after - before)) / scale);
+            n += n < count ? 7 : 0; // some of the list
+        }
+    }
+    print_message("%s: largest error of a type's change %.1e\n", mf_simd_name(), largest);
+    assert_true(largest < energy_tolerance);
+}
+
 static void check_sums(struct metropolis *metropolis) {
     const struct composition *composition = &metropolis->law.composition;
     const struct rdf_bins bins = {0, metropolis->law.potential->cutoff / BINS, BINS};
@@ -121,6 +165,8 @@ static void check_all_sets(const struct fluid *fluid) {
         if (!mf_simd_select(sets[s]))
             continue;
         check_changes(&metropolis);
+        if (composition_is_mixed(&fluid->setup.composition))
+            check_type_changes(&metropolis);
         check_sums(&metropolis);
         check_counts_together(&metropolis);
     }
