@@ -380,15 +380,21 @@ static void find_systematic(const struct motion *motion, struct motion_summary *
     s->vacf_drop = 1 - next / start;
 }
 
-/// Errors of both ends as if they were independent, which makes that of their ratio too large.
+/// Its error is that of both ends together, block by block: what makes one of them large makes the
+/// other large, too, and their ratio is known much better than either.
 static void find_growth(const struct motion *motion, struct motion_summary *s) {
     const size_t first = fit_first(&motion->plan), last = (size_t)motion->plan.lags;
+    const size_t blocks = mf_motion_blocks(motion);
     const double way = log((double)last / (double)first);
-    double begin, begin_error, end, end_error;
-    average(motion, motion->squares, read_lag, first, &begin, &begin_error);
-    average(motion, motion->squares, read_lag, last, &end, &end_error);
+    double begin, end, unused, deviations[MAX_BLOCKS];
+    average(motion, motion->squares, read_lag, first, &begin, &unused);
+    average(motion, motion->squares, read_lag, last, &end, &unused);
+    for (size_t b = 0; b < blocks; b++) {
+        const double *const sums = motion->squares + b * (last + 1);
+        deviations[b] = (sums[last] / end - sums[first] / begin) / (double)motion->each / way;
+    }
     s->growth = log(end / begin) / way;
-    s->growth_error = hypot(begin_error / begin, end_error / end) / way;
+    s->growth_error = mf_statistics_correlated_error(deviations, blocks, 1);
 }
 
 struct motion_summary mf_motion_result(const struct motion *motion,

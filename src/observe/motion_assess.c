@@ -7,15 +7,25 @@
 #include <stdio.h>
 
 bool mf_motion_is_early(const struct motion_summary *s) {
-    static const double least = 0.85, most = 1.3, errors = 2;
-    const double error = s->growth_error > 0 ? errors * s->growth_error : 0;
-    return s->growth + error < least || s->growth - error > most;
+    static const double least = 0.85, most = 1.3, errors = 3;
+    const bool is_far = s->growth < least || s->growth > most;
+    return is_far && !(fabs(s->growth - 1) < errors * s->growth_error);
+}
+
+void mf_motion_growth_text(const struct motion_summary *s, char text[NUMBER_TEXT_SIZE]) {
+    static const double rounded = 0.01;
+    if (s->growth_error >= rounded)
+        mf_number_text(s->growth, s->growth_error, text);
+    else
+        snprintf(text, NUMBER_TEXT_SIZE, "%.2f", s->growth);
 }
 
 const char *mf_motion_early_text(const struct motion_summary *s, char text[MOTION_EARLY_SIZE]) {
+    char growth[NUMBER_TEXT_SIZE];
+    mf_motion_growth_text(s, growth);
     text[0] = '\0';
     if (mf_motion_is_early(s))
-        snprintf(text, MOTION_EARLY_SIZE, "; no D yet: the MSD grows as t^%.2g", s->growth);
+        snprintf(text, MOTION_EARLY_SIZE, "; no D yet: the MSD still grows as t^%s", growth);
     return text;
 }
 
