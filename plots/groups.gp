@@ -8,8 +8,8 @@
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 # The names of columns without their units, and the numbers of those that are drawn.
-heads = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 1; n <= NF; n++) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }'" . from(table))
-drawn = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 2; n <= NF; n++) if ($n !~ /(_error|_boltzmann)\\[/) printf \"%d \", n; exit }'" . from(table))
+heads = system("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); for (n = 1; n <= NF; n++) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }'" . from(table))
+drawn = system("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); for (n = 2; n <= NF; n++) if ($n !~ /(_error|_boltzmann)\\[/) printf \"%d \", n; exit }'" . from(table))
 first = first_of(table)
 of_time = first eq "time" || first eq "sweeps"
 symbol = symbol_of(first)

@@ -119,5 +119,6 @@ enum status mf_data_table_write_in(const char *file, const struct units *units, 
 /// after all columns again in nm, ps and kJ/mol, "r[nm]".
 /// @param[in] beside  shape [columns]: format of each there; NULL: it does not stand again
 enum status mf_data_table_write_beside(const char *file, const struct units *units,
-                                       const struct data_column *columns, const char *const *beside,
-                                       size_t column_count, size_t rows) MUST_USE;
+                                       const char *comment, const struct data_column *columns,
+                                       const char *const *beside, size_t column_count,
+                                       size_t rows) MUST_USE;

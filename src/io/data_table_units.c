@@ -255,9 +255,10 @@ enum status mf_data_table_write_in(const char *file, const struct units *units, 
 }
 
 enum status mf_data_table_write_beside(const char *file, const struct units *units,
-                                       const struct data_column *columns, const char *const *beside,
-                                       size_t column_count, size_t rows) {
-    return write_all(file, units, NULL, columns,
+                                       const char *comment, const struct data_column *columns,
+                                       const char *const *beside, size_t column_count,
+                                       size_t rows) {
+    return write_all(file, units, comment, columns,
                      mf_units_have_second_columns(units) ? beside : NULL, column_count, rows);
 }
 

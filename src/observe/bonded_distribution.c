@@ -11,6 +11,7 @@
 #include "io/data_table.h"
 #include "observe/bonded_counts.h"
 #include "observe/measure.h"
+#include "observe/rdf_observable.h"
 
 #include <math.h>
 
@@ -293,6 +294,9 @@ static enum status write_table(const struct bonded_state *s, const char *file,
     struct data_column columns[MAX];
     char names[MAX][TOPOLOGY_NAME_SIZE + 32];
     OWNED double *values = NULL;
+    const char *comment;
+    char path[OUTPUT_PATH_SIZE];
+    TRY(mf_rdf_observable_comment(results, &comment));
     TRY_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
     for (size_t bin = 0; bin < bins; bin++)
         values[bin] = bonded_bins_centre(&s->bins[0], bin);
@@ -309,7 +313,9 @@ static enum status write_table(const struct bonded_state *s, const char *file,
                 (struct data_column){names[n], own + (size_t)c * bins, c == 1 ? "%.3g" : "%.8g"};
         }
     }
-    return mf_observable_table(results, file, columns, (size_t)(1 + COLUMNS * groups), bins);
+    mf_observable_file(results, file, path);
+    return mf_data_table_write_in(path, results->units, comment, columns,
+                                  (size_t)(1 + COLUMNS * groups), bins);
 }
 
 /// Nanoseconds of a term and sample.

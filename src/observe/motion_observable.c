@@ -49,7 +49,8 @@ static enum status write(const void *state, const struct observable_results *res
         {"vacf[lambda^2/tau^2]", values + 3 * rows, "%.8g"},
         {"vacf_error[lambda^2/tau^2]", values + 4 * rows, "%.3g"}};
     mf_observable_file(results, "motion.tsv", path);
-    return mf_data_table_write_beside(path, results->units, columns, beside, MOTION_COLUMNS, rows);
+    return mf_data_table_write_beside(path, results->units, NULL, columns, beside, MOTION_COLUMNS,
+                                      rows);
 }
 
 /// D of an infinite box, where the viscosity is known.

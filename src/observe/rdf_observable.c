@@ -171,7 +171,7 @@ void mf_rdf_observable_file(const char *folder, const char *name,
 }
 
 /// rdf.tsv, or in a mixture rdf_A-A.tsv, rdf_A-B.tsv and so on: r, g as the estimator tells it, g
-/// as counted, each with its standard error.
+/// as counted, each with its standard error. A comment says where these are of samples.
 static enum status write(const void *state, const struct observable_results *results) {
     const struct rdf_observed *observed = state;
     const struct rdf *rdf = &observed->counted;
@@ -189,6 +189,8 @@ static enum status write(const void *state, const struct observable_results *res
     for (size_t k = 0; k < bins->count; k++)
         r[k] = mf_rdf_bins_centre(bins, k);
     TRY(mf_rdf_result(rdf, 1, counted, counted_error));
+    const bool of_samples =
+        !force && mf_sample_blocks_are_independent(&rdf->blocks, counted, counted_error);
     if (force)
         TRY(mf_rdf_force_result(&observed->force, 1, RDF_FORCE_COUNTED, g, error));
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
@@ -205,9 +207,28 @@ static enum status write(const void *state, const struct observable_results *res
             {"g_histogram_error[1]", counted_error + first, "%.3g"}};
         mf_rdf_observable_file(results->folder, rdf->intermolecular ? "intermolecular_rdf" : "rdf",
                                &rdf->composition, (int)pair, path);
-        TRY(mf_data_table_write_beside(path, results->units, columns, beside, force ? 5 : 3,
-                                       bins->count));
+        TRY(mf_data_table_write_beside(path, results->units,
+                                       of_samples ? SAMPLE_BLOCKS_COMMENT : NULL, columns, beside,
+                                       force ? 5 : 3, bins->count));
     }
+    return STATUS_OK;
+}
+
+enum status mf_rdf_observable_comment(const struct observable_results *results,
+                                      const char **comment) {
+    const struct observable_use *use = results->use;
+    OWNED double *g = NULL, *error = NULL;
+    *comment = NULL;
+    while (use && use->observable && use->observable != &mf_rdf_observable)
+        use++;
+    if (use == NULL || use->observable == NULL)
+        return STATUS_OK;
+    const struct rdf *rdf = &((const struct rdf_observed *)use->state)->counted;
+    TRY_ARRAY(g, rdf->blocks.row);
+    TRY_ARRAY(error, rdf->blocks.row);
+    TRY(mf_rdf_result(rdf, 1, g, error));
+    if (mf_sample_blocks_are_independent(&rdf->blocks, g, error))
+        *comment = SAMPLE_BLOCKS_COMMENT;
     return STATUS_OK;
 }
 

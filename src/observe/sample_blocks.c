@@ -74,6 +74,22 @@ double mf_sample_blocks_mean(const struct sample_blocks *blocks, size_t k, doubl
     return samples > 0 ? sum / samples : NAN;
 }
 
+bool mf_sample_blocks_are_independent(const struct sample_blocks *blocks, const double *mean,
+                                      const double *error) {
+    static const double enough = 100, independent = 1.5;
+    double sum = 0, seen = 0;
+    for (size_t k = 0; k < blocks->row; k++) {
+        double counts = 0;
+        for (size_t b = 0; b < blocks->count; b++)
+            counts += blocks->sums[b * blocks->row + k];
+        if (!(counts >= enough) || !(error[k] > 0) || !isfinite(error[k]))
+            continue;
+        sum += counts * pow(error[k] / mean[k], 2);
+        seen += 1;
+    }
+    return seen > 0 && sum / seen < independent;
+}
+
 size_t mf_sample_blocks_spans(struct sample_blocks *blocks, struct memory_span *spans) {
     const size_t numbers = blocks->count * blocks->row;
     spans[0] = (struct memory_span){&blocks->taken, sizeof blocks->taken};

@@ -171,7 +171,7 @@ static enum status structure_factor_write(const struct structure_factor *factor,
     }
     columns[n++] = (struct data_column){"vectors[1]", curves.members, "%.7g"};
     mf_observable_file(results, "structure_factor.tsv", path);
-    return mf_data_table_write_beside(path, results->units, columns, beside, n, curves.bins);
+    return mf_data_table_write_beside(path, results->units, NULL, columns, beside, n, curves.bins);
 }
 
 static const double pi = 3.14159265358979323846;

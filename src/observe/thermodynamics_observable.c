@@ -127,7 +127,7 @@ static enum status write(const void *state, const struct observable_results *res
     const char *const beside[COLUMNS] = {
         [TIME] = sweeps ? NULL : "%.10g", [ENERGY] = "%.8g", [PRESSURE] = in_space ? "%.8g" : NULL};
     mf_observable_file(results, "thermodynamics.tsv", path);
-    return mf_data_table_write_beside(path, results->units, columns, beside, reduced,
+    return mf_data_table_write_beside(path, results->units, NULL, columns, beside, reduced,
                                       t->series.count);
 }
 

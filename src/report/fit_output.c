@@ -74,7 +74,7 @@ static enum status write_potential(const struct fit_file *fit, const struct unkn
     if (inverse_law_curve(&fit->problem.known, (int)pair))
         columns[count++] = (struct data_column){"total[k_B.T_0]", total, "%.17g"};
     curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".tsv", folder, path);
-    TRY(mf_data_table_write_beside(path, units, columns, beside, count, points));
+    TRY(mf_data_table_write_beside(path, units, NULL, columns, beside, count, points));
     if (mf_units_known(units)) {
         const struct votca_scale scale = {units->length, mf_units_energy_kj_per_mol(units)};
         curve_file(unknowns, UNKNOWN_POTENTIAL, pair, ".pot", folder, path);
@@ -112,7 +112,7 @@ static enum status write_omega(const struct fit_file *fit, const struct unknowns
         columns[count++] = (struct data_column){"truth[sqrt(mu/tau)]", truth, "%.8g"};
     curve_file(unknowns, kind, 0, ".tsv", folder, path);
     if (truth)
-        status = mf_data_table_write_beside(path, &fit->scene.units, columns, beside, count,
+        status = mf_data_table_write_beside(path, &fit->scene.units, NULL, columns, beside, count,
                                             OMEGA_POINTS);
     mf_memory_free(truth);
     return status;
@@ -157,7 +157,8 @@ static enum status write_group(const struct fit_file *fit, const struct unknowns
         {"energy[k_B.T_0]", result->step.curve[UNKNOWN_BONDED] + part.first, "%.17g"},
         {"energy_error[k_B.T_0]", result->step.curve_error[UNKNOWN_BONDED] + part.first, "%.3g"}};
     curve_file(unknowns, UNKNOWN_BONDED, group, ".tsv", folder, path);
-    return mf_data_table_write_beside(path, &fit->scene.units, columns, beside, 3, part.points);
+    return mf_data_table_write_beside(path, &fit->scene.units, NULL, columns, beside, 3,
+                                      part.points);
 }
 
 enum status mf_fit_output_curves(const struct fit_file *fit, const struct unknowns *unknowns,
@@ -227,8 +228,8 @@ static enum status write_table(const struct fit_file *fit, int kind,
         columns[count++] = (struct data_column){"given[1]", table->given, "%.8g"};
     snprintf(file, sizeof file, "%s.tsv", table->name);
     mf_run_folder_file(folder, file, path);
-    CHECK(
-        mf_data_table_write_beside(path, &fit->scene.units, columns, beside, count, table->count));
+    CHECK(mf_data_table_write_beside(path, &fit->scene.units, NULL, columns, beside, count,
+                                     table->count));
 done:
     for (size_t n = 0; n < PLACES; n++)
         mf_memory_free(place[n]);

@@ -35,15 +35,14 @@ const struct field mf_target_bonded_fields[] = {
              "as the group with \"_error\", or 3, else 0"},
     {"errors_of", FIELD_CHOICE, MEMBER(errors_of), .choices = mf_targets_errors,
      .initial = TARGET_ERRORS_UNKNOWN, .unit = "",
-     .help = "samples: of a simulation; bins: independent, "
-             "as of a figure; unknown: the larger"},
+     .help = "samples: a simulation's; bins: independent, as a figure's; "
+             "unknown: the file's, or larger"},
     FIELD_END,
 };
 
 /// In λ or degrees.
-static enum status read_columns(const struct target_bonded_parameters *p, int order,
-                                const char *name, const struct units *units,
-                                struct target_rows *rows) {
+static enum status read_columns(struct target_bonded_parameters *p, int order, const char *name,
+                                const struct units *units, struct target_rows *rows) {
     struct target_columns columns = {.file = p->file,
                                      .name = name,
                                      .x_unit = mf_bonded_kinds[order]->unit,
@@ -53,6 +52,8 @@ static enum status read_columns(const struct target_bonded_parameters *p, int or
                                      .y = p->value_column,
                                      .error = p->error_column};
     TRY(mf_target_rows_read(rows, &columns, units));
+    if (p->errors_of == TARGET_ERRORS_UNKNOWN && columns.errors_of_samples)
+        p->errors_of = TARGET_ERRORS_OF_SAMPLES;
     for (size_t k = 0; k < rows->count; k++)
         rows->error[k] = isfinite(rows->error[k]) ? rows->error[k] : 0;
     const double last = rows->x[rows->count - 1];
@@ -295,7 +296,7 @@ static void join(struct target_bonded *target, struct target_rows *rows, bool ci
 static enum status load(struct target_bonded *target, int order, const char *name,
                         const struct units *units, int dimensions) {
     enum status status = STATUS_OK;
-    const struct target_bonded_parameters *p = &target->parameters;
+    struct target_bonded_parameters *p = &target->parameters;
     const bool circle = mf_bonded_kinds[order]->periodic;
     struct target_rows rows = {0};
     CHECK(p->format == TARGET_ROWS_VOTCA ? read_votca(p->file, order, units, &rows)

@@ -46,8 +46,8 @@ const struct field mf_target_rdf_fields[] = {
      .help = "prior standard deviation of an estimated normalisation from 1"},
     {"errors_of", FIELD_CHOICE, MEMBER(errors_of), .choices = mf_targets_errors,
      .initial = TARGET_ERRORS_UNKNOWN, .unit = "",
-     .help = "samples: of a simulation; bins: independent, "
-             "as of a figure; unknown: the larger"},
+     .help = "samples: a simulation's; bins: independent, as a figure's; "
+             "unknown: the file's, or larger"},
     FIELD_END,
 };
 
@@ -77,8 +77,9 @@ static enum status check_errors(const struct target_rdf_parameters *p,
     return STATUS_OK;
 }
 
-static enum status read_columns(const struct target_rdf_parameters *p, const struct units *units,
-                                struct target_rows *rows) {
+static enum status read_columns(struct target_rdf *target, const struct units *units) {
+    struct target_rdf_parameters *const p = &target->parameters;
+    struct target_rows *const rows = &target->rows;
     struct target_columns columns = {.file = p->file,
                                      .x_unit = "lambda",
                                      .x = p->r_column,
@@ -92,6 +93,8 @@ static enum status read_columns(const struct target_rdf_parameters *p, const str
             "%s: column %lld numbers the rows, and column %lld increases as r does: "
             "set \"r_column\" to %lld and \"g_column\" to that of g",
             p->file, (long long)columns.x, (long long)columns.y, (long long)columns.y);
+    if (p->errors_of == TARGET_ERRORS_UNKNOWN && columns.errors_of_samples)
+        p->errors_of = TARGET_ERRORS_OF_SAMPLES;
     return rows->has_errors ? check_errors(p, rows, columns.error, columns.is_usual_error)
                             : STATUS_OK;
 }
@@ -295,7 +298,7 @@ static enum status load(struct target_rdf *target, const struct units *units, in
     const struct target_rdf_parameters *p = &target->parameters;
     target->rows.dimensions = dimensions;
     TRY(p->format == TARGET_ROWS_VOTCA ? read_votca(p, units, &target->rows)
-                                       : read_columns(p, units, &target->rows));
+                                       : read_columns(target, units));
     leave_out_half_bin(&target->rows);
     target->tail = mf_target_rows_tail(&target->rows);
     return mf_target_rdf_cut(target);

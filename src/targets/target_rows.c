@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "io/data_table.h"
 #include "io/votca.h"
+#include "observe/sample_blocks.h"
 #include "system/box.h"
 #include "system/topology.h"
 
@@ -83,6 +84,8 @@ static enum status find_columns(struct target_columns *columns, const struct dat
                         mf_data_table_is_spaced(table, (size_t)columns->y - 1, DATA_ROUNDING);
     columns->even = columns->numbered && columns->y < (int64_t)table->columns &&
                     mf_data_table_is_spaced(table, (size_t)columns->y - 1, DATA_EXACT);
+    columns->errors_of_samples =
+        columns->error > 0 && strstr(table->comments, SAMPLE_BLOCKS_COMMENT) != NULL;
     columns->is_usual_error =
         columns->error > 0 && columns->usual_error &&
         columns->error == (int64_t)mf_data_table_find(table, columns->usual_error);

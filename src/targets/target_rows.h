@@ -32,6 +32,7 @@ struct target_columns {
     bool may_be_unknown;     ///< y may be nan
     const char *usual_error; ///< what programs call a column of errors
     bool is_usual_error;     ///< found: it is called so
+    bool errors_of_samples;  ///< found: a comment says so, as `simulate` writes it
     bool numbered;           ///< found: x numbers the rows, and y grows as an argument does
     bool even;               ///< found: and does so by equal steps, before another column
 };

@@ -231,48 +231,10 @@ static enum status write_summary(const struct measure_result *result) {
 
 // target.json -------------------------------------------------------------------------------------
 
-/// Variances of g, over those of as many pairs that know nothing of each other: the mean over bins
-/// with pairs enough. Of frames that are correlated it is above 1.
-static enum status find_correlation(const struct rdf *rdf, double *correlation) {
-    static const double enough = 100;
-    enum status status = STATUS_OK;
-    const size_t all = rdf->pairs * rdf->bins.count;
-    double *g = NULL, *error = NULL, sum = 0, bins = 0;
-    NEW_ARRAY(g, all);
-    NEW_ARRAY(error, all);
-    CHECK(mf_rdf_result(rdf, 1, g, error));
-    for (size_t n = 0; n < all; n++) {
-        double pairs = 0;
-        for (size_t b = 0; b < rdf->blocks.count; b++)
-            pairs += rdf->blocks.sums[b * all + n];
-        if (!(pairs >= enough) || !isfinite(error[n]))
-            continue;
-        sum += pairs * pow(error[n] / g[n], 2);
-        bins++;
-    }
-    *correlation = bins > 0 ? sum / bins : INFINITY;
-done:
-    mf_memory_free(g);
-    mf_memory_free(error);
-    return status;
-}
-
-/// What the bins have in common is that of single samples only if these are independent: means of
-/// correlated ones have the covariance of what is slow.
-static void write_errors(const struct measure_result *result, struct json_writer *writer) {
-    static const double independent = 1.5;
-    double correlation;
-    if (!result->measured->in_vacuum &&
-        find_correlation(mf_measured_rdf(result->measured), &correlation) == STATUS_OK &&
-        correlation < independent)
-        mf_json_write_text(writer, "errors_of", mf_targets_errors[TARGET_ERRORS_OF_SAMPLES]);
-}
-
 static void write_rdf_file(const struct measure_result *result, struct json_writer *writer,
                            const char *file) {
     mf_json_write_text(writer, "file", file);
     mf_json_write_integer(writer, "particles", (int64_t)result->mapping->beads);
-    write_errors(result, writer);
 }
 
 static void write_rdf(const struct measure_result *result, struct json_writer *writer) {
@@ -337,7 +299,6 @@ static void write_groups(const struct measure_result *result, struct json_writer
         for (int g = 0; g < molecules->groups[order]; g++) {
             mf_json_begin(writer, molecules->group[order][g].name);
             mf_json_write_text(writer, "file", observable->files[0]);
-            write_errors(result, writer);
             mf_json_end(writer);
         }
         if (molecules->groups[order] > 0)

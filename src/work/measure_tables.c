@@ -64,7 +64,8 @@ static enum status write_forces(const struct measure_result *result) {
 enum status mf_measure_tables_write(const struct measure_result *result) {
     const struct simulation_setup setup = make_setup(result);
     const struct measure_plan plan = {.samples = (int64_t)result->measured->frames};
-    const struct observable_results results = {&setup, &plan, &result->units, result->folder, NULL};
+    const struct observable_results results = {&setup, &plan, &result->units, result->folder,
+                                               result->measured->use};
     if (!result->measured->in_vacuum && result->measured->plan.weighted.cutoff > 0)
         TRY(mf_weighted_density_write(&result->measured->weighted, &results));
     for (const struct observable_use *use = result->measured->use; use->observable; use++)

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /// The fluid of Groot and Warren (1997), without its last members: what is measured of it.
 #define GROOT_WARREN(box, count)                                                                   \
@@ -228,6 +229,34 @@ static void test_simulate_tells_of_pairs_that_stay_together_for_the_whole_run(vo
     assert_null(strstr(result.err, "stay for"));
 }
 
+/// In four units of time this fluid forgets its pairs, in one step it does not. Bond lengths go by
+/// the pairs.
+static void test_simulate_says_whether_errors_are_of_samples(void **state) {
+    static struct run_program_result result;
+    static const char dumbbells[] =
+        "{\"seed\": 5, \"box\": [4.64, 4.64, 4.64], \"time_step\": 0.04, "
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 25}, "
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 2.1213}, "
+        "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 20, \"length\": 0.8}}, "
+        "\"molecules\": {\"two\": {\"count\": 150, \"beads\": [\"A\", \"A\"], "
+        "\"bonds\": {\"spring\": [[1, 2]]}}}, "
+        "\"bond_lengths\": {}, \"rdf\": {\"bins\": 10}, "
+        "\"measure\": {\"equilibration\": 100, \"samples\": SAMPLES}}";
+    static const char *const samples[] = {"400, \"every\": 1", "60, \"every\": 100"};
+    static const char *const file[] = {"out/rdf.tsv", "out/bond_lengths.tsv"};
+    static const char comment[] = "# errors of samples\n";
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "scene.json", dumbbells, "SAMPLES", samples[k]);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+        run_program_assert_code(&result, 0);
+        for (int n = 0; n < 2; n++) {
+            char *table = temporary_folder_read(file[n]);
+            assert_int_equal(strncmp(table, comment, strlen(comment)) == 0, k == 1);
+            free(table);
+        }
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST_WITHOUT_FIGURES(test_simulate_measures_escape_times_when_asked),
@@ -240,6 +269,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_refuses_a_force_covariance_without_friction_forces),
         TEST_WITHOUT_FIGURES(test_interrupted_force_covariance_goes_on_with_the_same_bits),
         TEST_WITHOUT_FIGURES(test_simulate_tells_of_pairs_that_stay_together_for_the_whole_run),
+        TEST_WITHOUT_FIGURES(test_simulate_says_whether_errors_are_of_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -125,20 +125,22 @@ static void test_data_table_write_beside_repeats_columns_of_reduced_files(void *
     struct units units = argon;
     struct data_table table;
     units.system = UNITS_REDUCED;
-    assert_ok(mf_data_table_write_beside(file, &units, columns, beside, 3, 2));
+    assert_ok(mf_data_table_write_beside(file, &units, "of both", columns, beside, 3, 2));
     assert_ok(mf_data_table_read(&table, file, 5));
     assert_string_equal(table.header, "r[lambda]\tu[k_B.T_0]\tn[1]\tr[nm]\tu[kJ/mol]");
+    assert_contains(table.comments, "# of both\n");
     // 120 K · 0.0083144626 kJ/mol/K
     const double expected[] = {1, 0.5, 1, 0.34, 0.498867756, 2, 0.25, 2, 0.68, 0.249433878};
     for (size_t k = 0; k < 10; k++)
         assert_close_relative(table.values[k], expected[k], 1e-8);
     mf_data_table_clear(&table);
     // What speaks nm and ps, or has no scale, repeats nothing.
-    assert_ok(mf_data_table_write_beside(file, &argon, columns, beside, 3, 2));
+    assert_ok(mf_data_table_write_beside(file, &argon, NULL, columns, beside, 3, 2));
     assert_ok(mf_data_table_read(&table, file, 3));
     assert_string_equal(table.header, "r[nm]\tu[kJ/mol]\tn[1]");
     mf_data_table_clear(&table);
-    assert_ok(mf_data_table_write_beside(file, &(const struct units){0}, columns, beside, 3, 2));
+    assert_ok(
+        mf_data_table_write_beside(file, &(const struct units){0}, NULL, columns, beside, 3, 2));
     assert_ok(mf_data_table_read(&table, file, 3));
     assert_string_equal(table.header, "r[lambda]\tu[k_B.T_0]\tn[1]");
     mf_data_table_clear(&table);

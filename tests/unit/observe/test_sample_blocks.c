@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "observe/sample_blocks.h"
+#include "base/statistics.h"
 #include "shared/testing.h"
+
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
 
 /// Add the number of each sample to the sum of its block.
 static void take(struct sample_blocks *blocks, size_t samples) {
@@ -36,10 +40,48 @@ static void test_planned_samples_make_twenty_blocks(void **state) {
     mf_sample_blocks_clear(&blocks);
 }
 
+/// Counts of Poisson's law in 40 numbers, each sample taken `times` times: the variance of a mean
+/// is then so many times that of counts that know nothing of each other.
+static bool counts_are_independent(size_t samples, size_t times) {
+    enum { NUMBERS = 40 };
+    static const double expected = 30;
+    struct sample_blocks blocks;
+    double mean[NUMBERS], error[NUMBERS], drawn[NUMBERS];
+    gsl_rng *const rng = gsl_rng_alloc(gsl_rng_mt19937);
+    assert_ok(mf_sample_blocks_init(&blocks, samples, NUMBERS));
+    for (size_t n = 0; n < samples; n++) {
+        for (size_t k = 0; n % times == 0 && k < NUMBERS; k++)
+            drawn[k] = gsl_ran_poisson(rng, expected);
+        double *const sums = mf_sample_blocks_next(&blocks);
+        for (size_t k = 0; k < NUMBERS; k++)
+            sums[k] += drawn[k];
+    }
+    for (size_t k = 0; k < NUMBERS; k++) {
+        struct running_mean all = {0};
+        for (size_t b = 0; b < blocks.count; b++)
+            mf_statistics_add(&all, blocks.sums[b * NUMBERS + k] / blocks.samples[b]);
+        mean[k] = all.mean;
+        error[k] = mf_statistics_standard_error(&all);
+    }
+    const bool found = mf_sample_blocks_are_independent(&blocks, mean, error);
+    mf_sample_blocks_clear(&blocks);
+    gsl_rng_free(rng);
+    return found;
+}
+
+static void test_errors_are_of_samples_where_counts_scatter_as_poisson_says(void **state) {
+    (void)state;
+    assert_true(counts_are_independent(400, 1));
+    assert_false(counts_are_independent(400, 2));
+    assert_false(counts_are_independent(400, 10));
+    assert_false(counts_are_independent(1, 1)); // nothing is known of one
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_blocks_are_joined_where_nothing_is_planned),
         cmocka_unit_test(test_planned_samples_make_twenty_blocks),
+        cmocka_unit_test(test_errors_are_of_samples_where_counts_scatter_as_poisson_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

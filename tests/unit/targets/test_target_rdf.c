@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "targets/target_rdf.h"
+#include "problem/targets.h"
 #include "shared/is_close.h"
 #include "shared/temporary_folder.h"
 #include "shared/testing.h"
@@ -44,6 +45,25 @@ static void test_target_read_takes_the_bins_from_their_centres(void **state) {
     assert_close(target.g[2], 1.5, 0);
     assert_close(target.error[3], 0.3, 0);
     mf_target_rdf_clear(&target);
+}
+
+/// A comment of `simulate` and `measure`, which a run file may contradict.
+static void test_target_read_takes_what_the_table_says_of_its_errors(void **state) {
+#define FOUR_ROWS "# r g g_error\n0.05 0 0\n0.15 0.5 0.1\n0.25 1.5 0.2\n0.35 1 0.3\n"
+    static const struct {
+        const char *table, *members;
+        enum target_errors of;
+    } cases[] = {
+        {FOUR_ROWS, "", TARGET_ERRORS_UNKNOWN},
+        {"# errors of samples\n" FOUR_ROWS, "", TARGET_ERRORS_OF_SAMPLES},
+        {"# errors of samples\n" FOUR_ROWS, ", \"error_column\": 0", TARGET_ERRORS_UNKNOWN},
+        {"# errors of samples\n" FOUR_ROWS, ", \"errors_of\": \"bins\"", TARGET_ERRORS_OF_BINS}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        struct target_rdf target;
+        assert_ok(read(state, cases[k].table, cases[k].members, &target));
+        assert_int_equal(target.parameters.errors_of, cases[k].of);
+        mf_target_rdf_clear(&target);
+    }
 }
 
 /// What lies beyond a cutoff is kept for a look at the state, as if it ended at 1.
@@ -325,6 +345,7 @@ int main(void) {
         TEST(test_target_convert_takes_votca_to_possible_pairs),
         TEST(test_target_read_refuses_what_votca_does_not_write),
         TEST(test_target_read_takes_the_bins_from_their_centres),
+        TEST(test_target_read_takes_what_the_table_says_of_its_errors),
         TEST(test_target_read_keeps_the_whole_beside_what_is_cut),
         TEST(test_target_read_lets_the_first_bin_begin_above_0),
         TEST(test_target_read_takes_g_of_fix_ave_time),
