@@ -183,6 +183,33 @@ static void write_summary(const void *state, const struct observable_results *re
     mf_json_write_number(writer, "snapshots", (double)((const struct state *)state)->taken);
 }
 
+static bool has_format(const struct state *s, const struct snapshot_format *format) {
+    bool has = false;
+    for (int k = 0; mf_snapshot_formats[k]; k++)
+        has = has || (mf_snapshot_formats[k] == format && s->settings.formats >> k & 1);
+    return has;
+}
+
+/// Where they are; of .xtc, which has positions alone, also what tells the types.
+static void print(const void *state, const struct observable_results *results, char *line,
+                  size_t size) {
+    const struct state *s = state;
+    char folder[OUTPUT_PATH_SIZE];
+    mf_observable_file(results, SNAPSHOT_FOLDER, folder);
+    const int length =
+        snprintf(line, size, "%lld snapshots in %.150s", (long long)s->taken, folder);
+    if (!has_format(s, &mf_format_xtc_snapshot))
+        return;
+    if (has_format(s, &mf_format_lammps_dump_snapshot))
+        snprintf(line + length, size - (size_t)length,
+                 "; mesofit measure %.150s/trajectory.xtc -s %.150s/trajectory.lammpstrj", folder,
+                 folder);
+    else
+        snprintf(
+            line + length, size - (size_t)length,
+            "; trajectory.xtc has no types: for measure -s add \"lammps-dump\" to \"formats\"");
+}
+
 /// Nanoseconds of a particle in a snapshot and format.
 static const double write_cost = 1500;
 
@@ -231,6 +258,7 @@ const struct observable mf_snapshots = {
     .spans = spans,
     .write = write,
     .write_summary = write_summary,
+    .print = print,
     .explain = explain,
     .stage = "snapshots",
     .files = files,

@@ -320,8 +320,8 @@ static enum status take_atoms(struct mapping *mapping, const struct structure *s
         if (type == mapping->types)
             return mf_status_fail(
                 STATUS_BAD_INPUT,
-                "%s: no type has the name of atom %zu, \"%s\"; map atoms to beads by --map", file,
-                k + 1, atom->name);
+                "%s: no type has the name of atom %zu, \"%s\"; map atoms to beads by --map%s", file,
+                k + 1, atom->name, atom->name[0] ? "" : ", or name atoms by a structure, -s FILE");
         if (by_number && !told[type] && structure->names != STRUCTURE_TYPES) {
             told[type] = true;
             TRY(note(mapping,

@@ -49,6 +49,12 @@ struct structure {
     size_t residues; ///< 0 if neither residues nor molecules are known
 };
 
+/// Whether it tells what atoms are, and not only where.
+static inline bool structure_says_what(const struct structure *structure) {
+    return structure->has_names || structure->has_residues || structure->has_elements ||
+           structure->has_molecules || structure->has_types || structure->has_masses;
+}
+
 /// `atoms` atoms of which nothing is known. Fails: NO_MEMORY.
 enum status mf_structure_init(struct structure *structure, size_t atoms) MUST_USE;
 

@@ -45,6 +45,9 @@ enum status mf_measure_output_write(const struct measure_result *result) MUST_US
 enum status mf_measure_print(struct progress *progress,
                              const struct measure_result *result) MUST_USE;
 
+/// Say that a trajectory does not tell what its atoms are, and which file may.
+void mf_measure_print_nameless(struct progress *progress, const char *file);
+
 /// Say which command fits what was measured, where one can.
 void mf_measure_print_next(struct progress *progress, const struct measure_result *result);
 

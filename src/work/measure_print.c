@@ -6,6 +6,7 @@
 #include "io/units.h"
 
 #include <math.h>
+#include <unistd.h>
 
 /// What makes numbers in nm and ps those of the results, with the name of their unit.
 static double find_unit(const struct measure_result *result, const char *unit,
@@ -55,6 +56,29 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
             "%.0f %% of their correlation from one to the next",
             mf_units_factor(&result->units, "lambda^2/tau") * s.green_kubo,
             mf_units_suffix(&result->units, "lambda^2/tau", unit), 100 * s.vacf_drop);
+}
+
+/// A file of the same name beside it, as `simulate` and other programs write it: into `found`.
+static bool find_beside(const char *file, char found[OUTPUT_PATH_SIZE]) {
+    static const char *const endings[] = {"gro", "pdb", "psf", "lammpstrj", "gsd", NULL};
+    const char *const name = strrchr(file, '/'), *const dot = strrchr(name ? name : file, '.');
+    for (int k = 0; dot && endings[k]; k++) {
+        snprintf(found, OUTPUT_PATH_SIZE, "%.*s.%s", (int)fmin(dot - file, OUTPUT_PATH_SIZE - 16),
+                 file, endings[k]);
+        if (access(found, R_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
+void mf_measure_print_nameless(struct progress *progress, const char *file) {
+    char beside[OUTPUT_PATH_SIZE];
+    const bool found = find_beside(file, beside);
+    mf_progress_print(progress,
+                      "%s tells where atoms are and not what: all are of one type; their types and "
+                      "masses are those of -s %s",
+                      file,
+                      found ? beside : "FILE, a .gro, .pdb, .top, .psf or data file of LAMMPS");
 }
 
 /// Of how far apart pairs, and for how long.

@@ -107,22 +107,21 @@ static enum status read_molecules(struct run *run) {
 
 /// Names, residues and masses are of -s alone, if it is given.
 static enum status open_structure(struct run *run) {
-    const struct measure_request *const request = run->request;
-    const struct structure *const has = &run->structure.structure;
+    const char *const given = run->request->structure;
     const enum status status =
-        mf_trajectory_open(&run->structure, structure_file(run), &request->frames.options);
-    if (request->structure == NULL)
-        return status;
+        mf_trajectory_open(&run->structure, structure_file(run), &run->request->frames.options);
+    const bool says_what = structure_says_what(&run->structure.structure);
     if (status != STATUS_OK)
-        return mf_status_prefix(status, "-s");
-    if (has->has_names || has->has_residues || has->has_elements || has->has_molecules ||
-        has->has_types || has->has_masses)
+        return given ? mf_status_prefix(status, "-s") : status;
+    if (given == NULL && !says_what && run->request->map == NULL)
+        mf_measure_print_nameless(&run->progress, run->structure.file);
+    if (given == NULL || says_what)
         return STATUS_OK;
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "-s: %s: the format \"%s\" says where atoms are, and not what: give a .gro, "
         ".pdb, .top, .psf or data file of LAMMPS of the same atoms",
-        request->structure, run->structure.format->name);
+        given, run->structure.format->name);
 }
 
 /// What the atoms are, which of them are beads, and what molecules there may be.

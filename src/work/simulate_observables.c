@@ -224,7 +224,7 @@ void mf_simulate_observables_write_summary(const struct simulate_observables *ob
 void mf_simulate_observables_print(const struct simulate_observables *observables,
                                    const struct observable_results *results, struct progress *to) {
     for (const struct observable_use *use = observables->use; use->observable; use++) {
-        char line[256];
+        char line[512];
         if (use->observable->print) {
             use->observable->print(use->state, results, line, sizeof line);
             mf_progress_print(to, "%s", line);

@@ -137,11 +137,42 @@ static void test_all_snapshots_are_one_trajectory(void **state) {
     assert_contains(result.err, "101 frames of 30 beads");
 }
 
+/// XTC has positions alone: what tells types and masses is named by `simulate`, and by `measure`
+/// where it is not given; the dump of the same run is found by its name.
+static void test_xtc_is_measured_with_the_dump_beside_it(void **state) {
+    static struct run_program_result result;
+    static const char mixed[] =
+        "{\"units\": \"nm-ps\", \"box\": [3, 3, 3], \"temperature\": 300, \"time_step\": 0.01,\n"
+        "\"particles\": {\"types\": {\"A\": 40, \"B\": 20}, \"mass\": {\"A\": 18, \"B\": 30}},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\", \"a\": 20, \"cutoff\": 0.7},\n"
+        "\"snapshots\": {\"every\": 10, \"formats\": [FORMATS]},\n"
+        "\"measure\": {\"equilibration\": 20, \"samples\": 40, \"every\": 10}}\n";
+    static const char *const xtc = "out/snapshots/trajectory.xtc";
+    small_inputs_write(*state, "scene.json", mixed, "FORMATS", "\"xtc\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    assert_contains(result.err, "41 snapshots in out/snapshots; trajectory.xtc has no types: ");
+    RUN_PROGRAM(&result, "measure", xtc, "-o", "alone");
+    assert_contains(result.err, "masses are those of -s FILE, a .gro");
+    small_inputs_write(*state, "scene.json", mixed, "FORMATS", "\"xtc\", \"lammps-dump\"");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force");
+    assert_contains(result.err, "41 snapshots in out/snapshots; mesofit measure "
+                                "out/snapshots/trajectory.xtc -s "
+                                "out/snapshots/trajectory.lammpstrj\n");
+    RUN_PROGRAM(&result, "measure", xtc, "-o", "alone", "--force");
+    assert_contains(result.err, "masses are those of -s out/snapshots/trajectory.lammpstrj\n");
+    RUN_PROGRAM(&result, "measure", xtc, "-s", "out/snapshots/trajectory.lammpstrj", "-o", "told");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "A: 40 beads of 1 atom, the first of 18 u");
+    assert_contains(result.err, "B: 20 beads of 1 atom, the first of 30 u");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_gsd_is_the_dump_with_bonds,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_what_all_beads_weigh_is_in_the_snapshots,
+                                        small_inputs_enter_without_gnuplot, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_xtc_is_measured_with_the_dump_beside_it,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_all_snapshots_are_one_trajectory,
                                         small_inputs_enter_without_gnuplot, small_inputs_leave),
