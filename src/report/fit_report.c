@@ -30,8 +30,10 @@ static void find_lower(double value, double r, double *lowest, double *at) {
 }
 
 struct fit_change mf_fit_change_find(const struct unknowns *unknowns, enum unknown_kind kind,
-                                     size_t curve, const double *first, const double *last) {
-    struct fit_change change = {.well = INFINITY, .first_well = INFINITY};
+                                     size_t curve, const struct fit_result *result) {
+    const double *first = result->first[kind], *last = result->step.curve[kind];
+    const double *error = result->step.curve_error[kind];
+    struct fit_change change = {.well = INFINITY, .well_error = NAN, .first_well = INFINITY};
     const struct unknowns_part part = mf_unknowns_part(unknowns, kind, curve);
     const double *r = mf_unknowns_r(unknowns, kind);
     double squares = 0, count = 0;
@@ -40,6 +42,8 @@ struct fit_change mf_fit_change_find(const struct unknowns *unknowns, enum unkno
             continue;
         squares += (last[k] - first[k]) * (last[k] - first[k]);
         count += 1;
+        if (error && last[k] < change.well)
+            change.well_error = error[k];
         find_lower(last[k], r[k], &change.well, &change.well_at);
         find_lower(first[k], r[k], &change.first_well, &change.first_well_at);
     }
@@ -132,7 +136,8 @@ static void print_start(struct progress *to, enum inverse_start start) {
         mf_progress_print(to, "begun with %s", began[start]);
 }
 
-/// "potential: well -0.354 k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05 rms".
+/// "potential: well -0.354(12) k_B T_0 at 0.99 lambda (-0.451 at 0.99 at first), changed by 0.05
+/// rms".
 static void print_changes(struct progress *to, const struct units *units,
                           const struct unknowns *unknowns, const struct fit_result *result) {
     const double energy = mf_units_factor(units, "k_B T_0");
@@ -145,16 +150,15 @@ static void print_changes(struct progress *to, const struct units *units,
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {
-            char name[UNKNOWNS_NAME_SIZE], well[128] = "";
-            char energies[UNITS_NAME_SIZE], lengths[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE];
-            const struct fit_change change = mf_fit_change_find(
-                unknowns, kind, n, result->first[kind], result->step.curve[kind]);
+            char name[UNKNOWNS_NAME_SIZE], well[192] = "";
+            char depth[UNITS_MEASURED_SIZE], lengths[UNITS_NAME_SIZE], unit[UNITS_NAME_SIZE];
+            const struct fit_change change = mf_fit_change_find(unknowns, kind, n, result);
             if (isnan(change.rms))
                 continue; // that of pairs without g(r) is not looked for
             mf_unknowns_curve_name(unknowns, kind, n, name);
             if (kind == UNKNOWN_POTENTIAL && change.well < 0)
-                snprintf(well, sizeof well, " well %.3f %s at %.3g %s (%.3f at %.3g at first),",
-                         energy * change.well, mf_units_name(units, "k_B T_0", energies),
+                snprintf(well, sizeof well, " well %s at %.3g %s (%.3f at %.3g at first),",
+                         mf_units_measured(units, "k_B T_0", change.well, change.well_error, depth),
                          length * change.well_at, mf_units_name(units, "lambda", lengths),
                          energy * change.first_well, length * change.first_well_at);
             const double factor = mf_units_factor(units, mf_unknowns_unit(kind));

@@ -19,10 +19,10 @@ void mf_fit_report_formula(const struct fit_file *fit, const char *formula,
 struct fit_change {
     double rms;           ///< of the difference, in the unknown's unit
     double well, well_at; ///< the lowest point of a potential [k_B T_0] [λ]
+    double well_error;    ///< of the potential there; NAN: not known
     double first_well, first_well_at;
 };
 
-/// @param[in] first, last  of all curves of the unknown, shape [mf_unknowns_points]
-/// Tested: test_fit_change.
+/// From the first iteration to the last. Tested: test_fit_change.
 struct fit_change mf_fit_change_find(const struct unknowns *unknowns, enum unknown_kind kind,
-                                     size_t curve, const double *first, const double *last);
+                                     size_t curve, const struct fit_result *result);

@@ -283,8 +283,7 @@ static void write_start(struct json_writer *writer, const struct unknowns *unkno
     for (int kind = 0; kind < UNKNOWNS; kind++)
         for (size_t n = 0; result->first[kind] && n < mf_unknowns_curve_count(unknowns, kind);
              n++) {
-            const struct fit_change change = mf_fit_change_find(
-                unknowns, kind, n, result->first[kind], result->step.curve[kind]);
+            const struct fit_change change = mf_fit_change_find(unknowns, kind, n, result);
             if (isnan(change.rms))
                 continue; // that of pairs without g(r) is not looked for
             mf_unknowns_curve_name(unknowns, kind, n, name);
@@ -294,6 +293,7 @@ static void write_start(struct json_writer *writer, const struct unknowns *unkno
                 write_quantity(writer, "well", "k_B T_0", change.first_well);
                 write_quantity(writer, "well_at", "lambda", change.first_well_at);
                 write_quantity(writer, "well_now", "k_B T_0", change.well);
+                write_quantity(writer, "well_now_error", "k_B T_0", change.well_error);
                 write_quantity(writer, "well_now_at", "lambda", change.well_at);
             }
             mf_json_end(writer);

@@ -36,20 +36,25 @@ static void test_change_of_a_potential_is_that_beyond_its_core(void **state) {
     (void)state;
     struct unknowns unknowns;
     struct inverse_problem problem;
-    double g[BINS], first[BINS + 1] = {0}, last[BINS + 1] = {0};
+    double g[BINS], first[BINS + 1] = {0}, last[BINS + 1] = {0}, error[BINS + 1] = {0};
+    const struct fit_result result = {
+        .step = {.curve[UNKNOWN_POTENTIAL] = last, .curve_error[UNKNOWN_POTENTIAL] = error},
+        .first[UNKNOWN_POTENTIAL] = first};
     begin(&unknowns, &problem, g);
     assert_close(mf_unknowns_r(&unknowns, UNKNOWN_POTENTIAL)[20], 2.05, 1e-12);
     first[20] = -1;
     last[25] = -0.5;
+    error[20] = 0.3;
+    error[25] = 0.1;
     last[CORE] = -50;
     first[CORE - 3] = 1000;
     last[CORE - 3] = -1000;
-    const struct fit_change change =
-        mf_fit_change_find(&unknowns, UNKNOWN_POTENTIAL, 0, first, last);
+    const struct fit_change change = mf_fit_change_find(&unknowns, UNKNOWN_POTENTIAL, 0, &result);
     assert_close(change.first_well, -1, 0);
     assert_close(change.first_well_at, 2.05, 1e-12);
     assert_close(change.well, -0.5, 0);
     assert_close(change.well_at, 2.55, 1e-12);
+    assert_close(change.well_error, 0.1, 0);
     assert_close(change.rms, sqrt(1.25 / (BINS - CORE - 1)), 1e-12);
     mf_unknowns_clear(&unknowns);
 }
@@ -59,12 +64,14 @@ static void test_change_of_omega_is_its_rms(void **state) {
     struct unknowns unknowns;
     struct inverse_problem problem;
     double g[BINS], first[OMEGA_POINTS], last[OMEGA_POINTS];
+    const struct fit_result result = {.step.curve[UNKNOWN_OMEGA] = last,
+                                      .first[UNKNOWN_OMEGA] = first};
     begin(&unknowns, &problem, g);
     for (int k = 0; k < OMEGA_POINTS; k++) {
         first[k] = 1;
         last[k] = 1.25;
     }
-    assert_close(mf_fit_change_find(&unknowns, UNKNOWN_OMEGA, 0, first, last).rms, 0.25, 1e-12);
+    assert_close(mf_fit_change_find(&unknowns, UNKNOWN_OMEGA, 0, &result).rms, 0.25, 1e-12);
     mf_unknowns_clear(&unknowns);
 }
 
