@@ -2,6 +2,7 @@
 #include "work/explain.h"
 
 #include "base/simd.h"
+#include "dynamics/hybrid.h"
 #include "dynamics/metropolis.h"
 #include "observe/hard_theory.h"
 #include "scene/scene_doubts.h"
@@ -58,6 +59,16 @@ static double move_of(double around) {
 double mf_explain_sweep(const struct simulation_setup *setup, double particles, double range) {
     const double reach = range + mf_metropolis_skin(&setup->box, particles);
     return 1e-9 * particles * move_of(2 * mf_stages_pairs_within(setup, reach));
+}
+
+double mf_explain_trajectory(const struct simulation_setup *setup, double particles, double range) {
+    static const double whole = 5;
+    const double of_pair = mf_stages_cost.go_through + cost.pair + cost.conservative +
+                           (composition_is_mixed(&setup->composition) ? cost.report : 0);
+    double of_bead = cost.move + of_pair * mf_stages_pairs_within(setup, range);
+    for (int k = 0; k < setup->interactions; k++)
+        of_bead += setup->interaction[k].kind->cost;
+    return 1e-9 * whole * particles * HYBRID_STEPS * of_bead;
 }
 
 /// Sweeps, and what is computed for a sample besides.

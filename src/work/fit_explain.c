@@ -92,22 +92,26 @@ static enum status print_sampling(const struct fit_file *fit) {
     printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
            "scene: %.0f particles, %.0f others within the range of g(r) of each.\n",
            fit->method->name, count, 2 * mf_stages_pairs_within(setup, range));
-    if (scene_has_molecules(&fit->scene.molecules))
-        return STATUS_OK;
+    const bool molecules = scene_has_molecules(&fit->scene.molecules);
+    if (molecules && p->sampler == SAMPLER_MONTE_CARLO)
+        return STATUS_OK; // nobody has looked how independent its samples are
     TRY(mf_fit_scales_rdf_init(&rdf, &fit->files, &fit->scene));
     const double noise = mf_fit_scales_noise_of_sample(&rdf, &setup->box, count, range);
     const double samples =
         fmax(replicas * (double)p->samples, inefficiency * pow(noise / p->precision, 2));
     const double sweeps = replicas * (double)p->equilibration + samples * (double)p->every;
     mf_fit_scales_rdf_clear(&rdf);
-    print_time(sweeps * mf_explain_sweep(setup, count, range) / fit->problem.threads, time);
+    const double sweep = molecules ? mf_explain_trajectory(setup, count, range)
+                                   : mf_explain_sweep(setup, count, range);
+    print_time(sweeps * sweep / fit->problem.threads, time);
     printf(
         "Each of the last iterations, whose g is known within %.2g, takes about %.2g sweeps, "
         "those of its %lld replicas together, and %s with %d thread%s of a processor of 2024, if "
-        "samples are as independent as usual; a pressure as a target takes more. A fit has some "
+        "samples are as independent as usual; %sa pressure as a target takes more. A fit has some "
         "four to twenty iterations, and most of the first ones are shorter.\n",
         p->precision, sweeps, (long long)p->replicas, time, fit->problem.threads,
-        fit->problem.threads == 1 ? "" : "s");
+        fit->problem.threads == 1 ? "" : "s",
+        molecules ? "long molecules take up to ten times as many; " : "");
     return STATUS_OK;
 }
 

@@ -92,6 +92,30 @@ static void test_fit_molecules_again_with_the_same_bits(void **state) {
     }
 }
 
+/// Sweeps of both replicas, as history.tsv counts them; single moves are not known.
+static void test_fit_molecules_explains_what_the_last_iterations_take(void **state) {
+    static struct run_program_result result;
+    static const char words[] = "within 0.02, takes about ";
+    struct data_table table;
+    small_inputs_write(*state, "run.json", run, NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
+    const char *told = strstr(result.out, words);
+    assert_non_null(told);
+    assert_contains(told, "long molecules take up to ten times as many");
+    const double sweeps = strtod(told + strlen(words), NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "out", "--force", "--quiet");
+    assert_ok(mf_data_table_read(&table, "out/history.tsv", 2));
+    const size_t column = mf_data_table_find(&table, "engine_steps") - 1;
+    const double *last = table.values + table.columns * (table.rows - 1) + column;
+    const double taken = last[0] - last[-(ptrdiff_t)table.columns];
+    mf_data_table_clear(&table);
+    assert_true(taken > sweeps / 3 && taken < 3 * sweeps);
+    small_inputs_write(*state, "run.json", run, "\"imc\"", "\"imc\", \"sampler\": \"monte-carlo\"");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    assert_null(strstr(result.out, "takes about"));
+}
+
 /// All bonds are in the bins: ∫ p dq = 1, of 160 bonds and 80 angles, and S − S* is their share.
 static void test_fit_molecules_shows_lengths_and_angles_of_its_samples(void **state) {
     static struct run_program_result result;
@@ -414,6 +438,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(test_fit_molecules_again_with_the_same_bits, enter,
                                         small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_by_relative_entropy_again_with_the_same_bits,
+                                        enter, small_inputs_leave),
+        cmocka_unit_test_setup_teardown(test_fit_molecules_explains_what_the_last_iterations_take,
                                         enter, small_inputs_leave),
         cmocka_unit_test_setup_teardown(test_fit_molecules_shows_lengths_and_angles_of_its_samples,
                                         enter, small_inputs_leave),
