@@ -244,19 +244,27 @@ static bool is_off(double temperature, double error, double wanted) {
     return fabs(temperature - wanted) > fmax(min * wanted, errors * error);
 }
 
+enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary *s,
+                                            const struct simulation_setup *setup) {
+    if (simulation_holds_temperature(setup) || !mf_simulation_is_thermal(setup) ||
+        s->blocks < MIN_BLOCKS || isnan(s->temperature) ||
+        agrees(s->temperature, s->temperature_error, setup->temperature))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "the temperature is %.3g" STATUS_TEMPERATURE
+                          ", not %.3g" STATUS_TEMPERATURE ": there is no thermostat; give the "
+                          "scene \"dissipative\", friction and noise",
+                          s->temperature, setup->temperature);
+}
+
 enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
                                          const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
     const bool held = simulation_holds_temperature(setup);
     TRY(mf_thermodynamics_assess(summary, setup));
+    TRY(mf_thermodynamics_assess_unheld(summary, setup));
     if (!mf_simulation_is_thermal(setup) || s->blocks < MIN_BLOCKS)
         return STATUS_OK;
-    if (!held && !agrees(s->temperature, s->temperature_error, setup->temperature))
-        return mf_status_fail(STATUS_UNSTABLE,
-                              "the temperature is %.3g" STATUS_TEMPERATURE
-                              ", not %.3g" STATUS_TEMPERATURE ": there is no thermostat; give the "
-                              "scene \"dissipative\", friction and noise",
-                              s->temperature, setup->temperature);
     const double wanted = held ? setup->temperature : s->temperature;
     const bool has_velocities = is_off(s->temperature, s->temperature_error, wanted);
     const bool rests = shows_forces(setup) && is_off(s->temperature_configurational,

@@ -82,6 +82,11 @@ struct thermodynamics_summary mf_thermodynamics_result(const struct thermodynami
 enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summary,
                                      const struct simulation_setup *setup) MUST_USE;
 
+/// Whether a temperature that nothing holds is still that of the setup, as above. Fails: UNSTABLE
+/// with both in the message. Tested: test_thermodynamics, cli/test_simulate.
+enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary *summary,
+                                            const struct simulation_setup *setup) MUST_USE;
+
 /// A stricter look at what was fitted: one of the temperatures off by more than 2.5 % and three
 /// standard errors says that the potential and its time step do not belong together. Without
 /// friction the kinetic one must be near that of the setup, too, for which the target holds. Fails:

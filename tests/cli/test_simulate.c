@@ -361,6 +361,30 @@ static void test_simulate_is_not_ok_when_it_cools_down_all_along(void **state) {
     results_assert_text("cooling/summary.json", "status", "unconverged");
 }
 
+/// A lattice whose potential energy becomes heat where nothing takes it away, and a gas without
+/// forces, which keeps the temperature that it begins with.
+static void test_simulate_ends_with_the_temperature_that_nothing_holds(void **state) {
+    static const char lattice[] =
+        "{\"seed\": 3, \"units\": \"nm-ps\", \"box\": [2.2, 2.2, 2.2], \"temperature\": 120,\n"
+        "\"particles\": {\"count\": 220, \"mass\": 40}, \"time_step\": 0.005,\n"
+        "\"conservative\": LAW,\n"
+        "\"measure\": {\"equilibration\": 1000, \"samples\": 60, \"every\": 50}}\n";
+    static const char words[] = "K, not 120 K: there is no thermostat";
+    static struct run_program_result result;
+    small_inputs_write(*state, "scene.json", lattice, "LAW",
+                       "{\"law\": \"lennard-jones\", \"epsilon\": 1, \"sigma\": 0.34, "
+                       "\"cutoff\": 0.85}");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "hot");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, words);
+    assert_true(results_number("hot/summary.json", "temperature") > 1.5 * 120);
+    small_inputs_write(*state, "scene.json", lattice, "LAW",
+                       "{\"law\": \"soft-repulsion\", \"a\": 1e-6, \"cutoff\": 0.3}");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "gas");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, words));
+}
+
 /// Trimers whose beads have not yet moved apart, and the same after a while.
 static void test_simulate_warns_when_it_has_not_settled(void **state) {
     static const char plan[] = "\"equilibration\": 0, \"samples\": 100, \"every\": 5";
@@ -519,6 +543,7 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_only_the_kinetic_temperature_is_right),
         TEST_WITHOUT_FIGURES(test_simulate_is_not_ok_when_its_temperature_is_another),
         TEST_WITHOUT_FIGURES(test_simulate_is_not_ok_when_it_cools_down_all_along),
+        TEST_WITHOUT_FIGURES(test_simulate_ends_with_the_temperature_that_nothing_holds),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_nothing_holds_the_temperature),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_steps_do_not_follow_a_memory),
         TEST_WITHOUT_FIGURES(test_simulate_warns_when_it_has_not_settled),
