@@ -380,6 +380,7 @@ enum status mf_measured_motion_add(struct measured_motion *motion,
                                    const struct configuration *configuration) {
     if (motion->begun)
         TRY(follow(motion, beads, configuration));
+    motion->has_velocities = motion->has_velocities || beads->has_velocities;
     if (beads->has_velocities && motion->is_thermal) {
         const double temperature = find_temperature(motion, beads);
         TRY(mf_sample_series_add(&motion->temperature, &temperature));

@@ -85,8 +85,9 @@ struct measured_motion {
     bool begun;
     bool has_vacf;
     bool is_thermal; ///< velocities tell the temperature, if there are any; with or without times
-    bool together;   ///< beads are all that moves: their momentum is conserved
-    double interval; ///< between frames [ps]
+    bool has_velocities; ///< a frame has
+    bool together;       ///< beads are all that moves: their momentum is conserved
+    double interval;     ///< between frames [ps]
     double first_time, last_time;
     size_t frames;
     double *mass; ///< shape [beads]; NULL: not all are known

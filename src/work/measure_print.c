@@ -221,6 +221,19 @@ static void print_forces(struct progress *progress, const struct measure_result 
                           1e-6 * (double)(FORCES_BLOCKS * numbers * sizeof(double)));
 }
 
+/// Why velocities do not tell the temperature.
+static const char *without_temperature(const struct measure_result *result) {
+    const struct measured_motion *const motion = &result->measured->motion;
+    if (result->measured->in_vacuum)
+        return "there is no box";
+    if (!motion->has_velocities)
+        return "there are no velocities";
+    if (result->mapping->broken)
+        return "velocities of parts of molecules do not tell it, as bonds of fixed length hold "
+               "them";
+    return motion->mass == NULL ? "masses are not known" : "one bead does not tell it";
+}
+
 /// A temperature that is given, and that of the velocities: they are those of whole beads, so that
 /// constraints within beads do no harm, but those between beads make it too low.
 static void print_temperature(struct progress *progress, const struct measure_result *result) {
@@ -233,8 +246,8 @@ static void print_temperature(struct progress *progress, const struct measure_re
     if (isnan(given) && kinetic->count == 0)
         mf_progress_print(
             progress,
-            "unknown temperature%s: give it by --temperature, or in \"scene\" of target.json",
-            result->mapping->broken ? " by parts of molecules" : "");
+            "unknown temperature (%s): give it by --temperature, or in \"scene\" of target.json",
+            without_temperature(result));
     else if (isnan(given))
         mf_progress_print(progress,
                           "T = %s K by the velocities of the beads; one that is known is given by "
@@ -246,7 +259,7 @@ static void print_temperature(struct progress *progress, const struct measure_re
             progress,
             "mesofit: warning: --temperature %g, but the velocities of the beads have "
             "%s K: another temperature, other units, or constraints between beads, "
-            "each of which takes a degree of freedom of 3 a bead",
+            "each of which takes a degree of freedom of 3 a bead; give that of the simulation",
             given, text);
 }
 

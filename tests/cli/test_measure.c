@@ -459,6 +459,21 @@ static void test_measure_spares_what_it_did_not_write(void **state) {
     MEASURE(xtc, "-s", gro, "-o", "again", "--static", "--quiet", "--force");
 }
 
+/// A .trr has velocities, an .xtc has none; atoms of water are parts of molecules.
+static void test_measure_says_why_it_does_not_know_the_temperature(void **state) {
+    static const char words[] =
+        "unknown temperature (velocities of parts of molecules do not tell it";
+    small_inputs_write(*state, "water.json",
+                       "{\"molecules\": {\"SOL\": {\"beads\": [\"OW\", \"HW1\", \"HW2\"], "
+                       "\"bonds\": {\"OH\": [[1, 2], [1, 3]]}}}}",
+                       NULL, NULL);
+    MEASURE(trr, "-s", gro, "--molecules", "water.json", "-o", "parts");
+    assert_contains(result.err, words);
+    assert_contains(result.err, "next: mesofit fit --target parts --temperature T finds ");
+    MEASURE(xtc, "-s", gro, "--molecules", "water.json", "-o", "places");
+    assert_contains(result.err, "unknown temperature (there are no velocities): give it by");
+}
+
 int main(void) {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, enter, small_inputs_leave)
     const struct CMUnitTest tests[] = {
@@ -470,6 +485,7 @@ int main(void) {
         TEST(test_measure_joins_files_when_a_run_was_restarted),
         TEST(test_measure_uses_what_is_whole_when_a_file_breaks_off),
         TEST(test_measure_writes_what_it_has_when_it_is_stopped),
+        TEST(test_measure_says_why_it_does_not_know_the_temperature),
         TEST(test_measure_speaks_angstrom_when_asked),
         TEST(test_measure_tells_types_apart_when_the_map_does),
         TEST(test_measure_warns_of_velocities_that_are_far_apart),

@@ -132,7 +132,8 @@ static void test_a_temperature_that_nothing_tells(void **state) {
                                 "Ar 1 2 3\n2 1 Ar 9 2 3\n3 1 Ar 5 9 17\n";
     small_inputs_write(*state, "a.dump", frame, NULL, NULL);
     MEASURE("--file-units", "real", "--static");
-    assert_contains(result.err, "unknown temperature: give it by --temperature");
+    assert_contains(result.err, "unknown temperature (there are no velocities): give it by "
+                                "--temperature");
     assert_contains(result.err, "next: mesofit fit --target out --temperature T finds the ");
     RUN_PROGRAM(&result, "fit", "--target", "out", "-o", "fit");
     run_program_assert_code(&result, 2);
