@@ -123,15 +123,17 @@ static enum status check_edge(const struct simulation_setup *scene, const struct
                           (long long)find_least(scene, topology_of(scene), beads * (1 - rounding)));
 }
 
-/// Molecules that meet their own images in the scene may do so in a smaller box, too.
+/// Molecules that may meet their own images in the scene do so no more often in what is sampled.
 static enum status check_edges(const struct inverse_problem *problem, const struct box *box,
                                int64_t wanted) {
     const struct inversion_edge pairs = find_edge_of_pairs(problem);
-    const struct inversion_edge whole = find_edge_of_molecules(problem, pairs.least);
+    const double of_scene = mf_box_shortest(&problem->scene.box);
+    struct inversion_edge whole = find_edge_of_molecules(problem, pairs.least);
+    if (whole.least > of_scene)
+        whole = (struct inversion_edge){
+            of_scene, "that of the scene, in which a molecule may already meet its own image"};
     TRY(check_edge(&problem->scene, box, wanted, &pairs));
-    return whole.least > mf_box_shortest(&problem->scene.box)
-               ? STATUS_OK
-               : check_edge(&problem->scene, box, wanted, &whole);
+    return check_edge(&problem->scene, box, wanted, &whole);
 }
 
 /// So many particles at the densities of the scene, and their box.

@@ -339,7 +339,8 @@ struct wrong {
     const char *from, *to, *words[3];
 };
 
-/// Of chains of five beads, stretched out with the range of g(r): 4 · 0.6 + 1.2.
+/// Of chains of five beads, stretched out with the range of g(r): 4 · 0.6 + 1.2; chains of
+/// nine, 6.0 long, may do so in the scene of 4.4, and not in less.
 static void test_fit_molecules_refuses_a_box_in_which_they_meet_themselves(void **state) {
     static struct run_program_result result;
     small_inputs_write(*state, "run.json", run, "[\"A\", \"B\", \"A\"]",
@@ -351,6 +352,17 @@ static void test_fit_molecules_refuses_a_box_in_which_they_meet_themselves(void 
     assert_contains(result.err, "method.particles: 110 make a box whose shortest edge, 3.39");
     assert_contains(result.err, "is below what keeps a molecule apart from its own image, 3.5");
     assert_contains(result.err, "are the least");
+    small_inputs_write(*state, "run.json", run, "[\"A\", \"B\", \"A\"]",
+                       "[\"A\", \"B\", \"A\", \"A\", \"B\", \"A\", \"A\", \"B\", \"A\"]");
+    small_inputs_change(*state, "run.json", "\"count\": 80", "\"count\": 30");
+    small_inputs_change(*state, "run.json", "\"imc\"", "\"imc\", \"particles\": 200");
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "refused");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "is below that of the scene, in which a molecule may already meet "
+                                "its own image, 4.4; 270 are the least");
+    small_inputs_change(*state, "run.json", "\"particles\": 200", "\"particles\": 270");
+    RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+    run_program_assert_code(&result, 0);
 }
 
 static void test_fit_molecules_refuses_what_cannot_be(void **state) {
