@@ -64,6 +64,22 @@ static void test_hnc_closure_is_the_equation_by_hand_when_beads_have_partners(vo
     assert_true(largest < discretisation && size > 0.01);
 }
 
+/// One bead in four is called B, by chance: the same liquid, in which a bead's partner is like it
+/// or unlike it, and each pair type has the counts of all over those of an ideal gas.
+static void test_hnc_closure_does_not_change_when_some_beads_are_called_otherwise(void **state) {
+    (void)state;
+    enum { PAIRS = 3 };
+    static const double discretisation = 2e-4; // of cells of four bins
+    const struct composition two = {.types = 2, .count = {375000000000, 125000000000}};
+    double g[PAIRS * BINS], inside[PAIRS * BINS], indirect[PAIRS * BINS];
+    for (int pair = 0; pair < PAIRS; pair++)
+        make_curves(g + (ptrdiff_t)pair * BINS, inside + (ptrdiff_t)pair * BINS);
+    assert_ok(mf_hnc_closure(&(struct hnc_liquid){&bins, &box, &two, inside, 0}, g, indirect));
+    for (int n = 0; n < PAIRS * BINS; n += 3)
+        assert_close(indirect[n], indirect_of(mf_rdf_bins_centre(&bins, (size_t)(n % BINS))),
+                     discretisation);
+}
+
 static void test_hnc_closure_has_no_indirect_part_in_an_ideal_gas_of_molecules(void **state) {
     (void)state;
     double g[BINS], inside[BINS], indirect[BINS];
@@ -119,6 +135,7 @@ int main(void) {
     gsl_set_error_handler_off(); // as the program does: a matrix may have no Cholesky factor
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_hnc_closure_is_the_equation_by_hand_when_beads_have_partners),
+        cmocka_unit_test(test_hnc_closure_does_not_change_when_some_beads_are_called_otherwise),
         cmocka_unit_test(test_hnc_closure_has_no_indirect_part_in_an_ideal_gas_of_molecules),
         cmocka_unit_test(test_hnc_closure_slope_is_that_of_the_closure_of_molecules),
         cmocka_unit_test(test_hnc_closure_min_intramolecular_is_that_of_pairs_at_a_distance),
