@@ -34,9 +34,12 @@ static const char fit[] =
 /// The last number of a table's column of that name and unit.
 static double last_in_column(const char *file, const char *name) {
     char *text = temporary_folder_read(file);
-    char *lines, *rest, *word, *last = NULL, *names = strtok_r(text + 2, "\n", &lines);
-    for (char *line; (line = strtok_r(NULL, "\n", &lines));)
+    char *lines, *rest, *word, *last = NULL, *names = NULL;
+    for (char *line = strtok_r(text, "\n", &lines); line; line = strtok_r(NULL, "\n", &lines)) {
+        if (line[0] == '#')
+            names = line + 2; // below a comment there may be
         last = line;
+    }
     size_t place = 0;
     for (word = strtok_r(names, "\t", &rest); word && strcmp(word, name) != 0;
          word = strtok_r(NULL, "\t", &rest))
