@@ -188,13 +188,19 @@ static void leave_factors(const struct inversion_state *state, double *step) {
 }
 
 /// Of an excess of which a part is noise, the rest is to be removed (N. Wiener, Extrapolation,
-/// Interpolation, and Smoothing of Stationary Time Series (1949)): 1 − noise²/rms² of each section.
+/// Interpolation, and Smoothing of Stationary Time Series (1949)): 1 − 1/χ² per bin, of each pair
+/// type and group by itself. Few beads of a type have a noise beside which all others seem to
+/// agree.
 static void leave_noise(const struct inversion_state *state, double *step) {
-    for (int k = 0; k < state->assessment.sections; k++) {
-        const struct inversion_section *section = &state->assessment.section[k];
-        const double share = fmax(0, 1 - pow(section->noise / section->rms, 2));
-        for (size_t a = section->known; a < section->known + section->known_count; a++)
-            step[state->grid.known_point[a]] *= share;
+    const struct potential_grid *grid = &state->grid;
+    for (size_t block = 0, first = 0; block < grid->blocks; first += grid->known_of[block++]) {
+        const size_t last = first + grid->known_of[block];
+        const double misfit = mf_inversion_chi_squared(state, state->excess, first, last);
+        double bins = 0;
+        for (size_t a = first; a < last; a++)
+            bins += grid->seen[a];
+        for (size_t a = first; a < last; a++)
+            step[grid->known_point[a]] *= misfit > bins ? 1 - bins / misfit : 0;
     }
 }
 
