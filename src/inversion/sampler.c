@@ -155,14 +155,15 @@ static void sum_stresses(const struct sampler *sampler, double *sample) {
 }
 
 /// Add R_g² and R_e² of a molecule that was made whole.
-static void add_size(const struct whole_molecules *whole, int beads, double *sums) {
+static void add_size(const struct whole_molecules *whole, const struct topology_kind *kind,
+                     double *sums) {
     const double(*place)[3] = (const double(*)[3])whole->place;
     for (int d = 0; d < 3; d++) {
         struct running_mean mean = {0};
-        for (int bead = 0; bead < beads; bead++)
+        for (int bead = 0; bead < kind->beads; bead++)
             mf_statistics_add(&mean, place[bead][d]);
         sums[SAMPLER_GYRATION] += mean.squares / mean.count;
-        sums[SAMPLER_ENDS] += pow(place[beads - 1][d] - place[0][d], 2);
+        sums[SAMPLER_ENDS] += pow(place[kind->end[1]][d] - place[kind->end[0]][d], 2);
     }
 }
 
@@ -175,7 +176,7 @@ static void sum_sizes(struct sampler *sampler, double *sums) {
     for (int k = 0; k < topology->kinds; k++)
         for (int64_t m = 0; m < topology->kind[k].count; m++) {
             mf_whole_molecules_make(&sampler->whole, mf_sampler_particles(sampler), k, m);
-            add_size(&sampler->whole, topology->kind[k].beads, sums);
+            add_size(&sampler->whole, &topology->kind[k], sums);
         }
 }
 

@@ -100,7 +100,7 @@ enum sampler_sum {
     SAMPLER_VIRIAL,   ///< Σ r·F [k_B T_0]
     SAMPLER_ENERGY,   ///< Σ Φ, and U of molecules [k_B T_0]
     SAMPLER_GYRATION, ///< Σ R_g² of the molecules, each bead with the same weight [λ²]
-    SAMPLER_ENDS,     ///< Σ R_e² of the molecules, from the first bead to the last [λ²]
+    SAMPLER_ENDS,     ///< Σ R_e² of the molecules, from one end to the other [λ²]
     SAMPLER_DENSITY,  ///< volume of the scene over that of the sample, 1 where boxes stay [1]
     SAMPLER_WAVES, ///< of a mixture Σ_a |ρ_a(q)|²/N_a of types a, q along the longest edge [1]
     SAMPLER_SUMS,

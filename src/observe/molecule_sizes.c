@@ -163,7 +163,7 @@ static enum status sample(void *state, const struct configuration *configuration
             gyration += own;
             part[GYRATION] += own;
             for (int d = 0; d < 3; d++) {
-                vector[d] = s->whole.place[kind->beads - 1][d] - s->whole.place[0][d];
+                vector[d] = s->whole.place[kind->end[1]][d] - s->whole.place[kind->end[0]][d];
                 end += vector[d] * vector[d];
                 part[END] += vector[d] * vector[d];
             }

@@ -202,8 +202,7 @@ static void print(const void *state, const struct observable_results *results, c
         return;
     if (has_format(s, &mf_format_lammps_dump_snapshot))
         snprintf(line + length, size - (size_t)length,
-                 "; mesofit measure %.150s/trajectory.xtc -s %.150s/trajectory.lammpstrj", folder,
-                 folder);
+                 "; there: mesofit measure trajectory.xtc -s trajectory.lammpstrj");
     else
         snprintf(
             line + length, size - (size_t)length,

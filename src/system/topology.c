@@ -184,6 +184,25 @@ done:
     return status;
 }
 
+/// The order of the beads says nothing: snapshots have them by type.
+static enum status find_ends(struct topology_kind *kind) {
+    struct topology_bonds bonds;
+    int found = 0, end[2] = {0};
+    TRY(mf_topology_bonds(kind, &bonds));
+    for (int bead = 0; bead < kind->beads; bead++) {
+        if (bonds.start[bead + 1] - bonds.start[bead] != 1)
+            continue;
+        if (found < 2)
+            end[found] = bead;
+        found++;
+    }
+    kind->end[0] = found == 2 ? end[0] : 0;
+    kind->end[1] = found == 2 ? end[1] : kind->beads - 1;
+    mf_memory_free(bonds.start);
+    mf_memory_free(bonds.to);
+    return STATUS_OK;
+}
+
 enum status mf_topology_find_disconnected(const struct topology_kind *kind, int *bead) {
     enum status status = STATUS_OK;
     struct search search;
@@ -270,6 +289,7 @@ enum status mf_topology_complete(struct topology *topology, const struct composi
         topology->molecules += topology->kind[k].count;
         TRY(number_beads(&topology->kind[k], next));
         TRY(find_near(&topology->kind[k]));
+        TRY(find_ends(&topology->kind[k]));
     }
     TRY_ARRAY(topology->molecule, topology->particles);
     memset(topology->molecule, 0xff, topology->particles * sizeof *topology->molecule);

@@ -36,6 +36,7 @@ struct topology_kind {
     int terms[BONDED_KINDS];
     struct topology_term *term[BONDED_KINDS]; ///< shape [terms]
     // Found by mf_topology_complete:
+    int end[2];      ///< the two beads with one bond, of a chain; else the first and the last
     int64_t first;   ///< number of its first molecule
     uint32_t *id;    ///< shape [beads], of the first molecule
     uint32_t *step;  ///< shape [beads]: from there to the next molecule

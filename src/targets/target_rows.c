@@ -55,6 +55,15 @@ static bool is_known(const struct data_table *table, int64_t column) {
     return known;
 }
 
+/// Whether a line of the comments is that of errors of samples.
+static bool says_samples(const char *comments) {
+    static const char line[] = "# " SAMPLE_BLOCKS_COMMENT "\n";
+    const char *found = strstr(comments, line);
+    while (found && found != comments && found[-1] != '\n')
+        found = strstr(found + 1, line);
+    return found != NULL;
+}
+
 /// Columns that the file does not number are found by their names, as in tables that `mesofit
 /// simulate` writes, or are the usual ones.
 static enum status find_columns(struct target_columns *columns, const struct data_table *table) {
@@ -84,8 +93,7 @@ static enum status find_columns(struct target_columns *columns, const struct dat
                         mf_data_table_is_spaced(table, (size_t)columns->y - 1, DATA_ROUNDING);
     columns->even = columns->numbered && columns->y < (int64_t)table->columns &&
                     mf_data_table_is_spaced(table, (size_t)columns->y - 1, DATA_EXACT);
-    columns->errors_of_samples =
-        columns->error > 0 && strstr(table->comments, SAMPLE_BLOCKS_COMMENT) != NULL;
+    columns->errors_of_samples = columns->error > 0 && says_samples(table->comments);
     columns->is_usual_error =
         columns->error > 0 && columns->usual_error &&
         columns->error == (int64_t)mf_data_table_find(table, columns->usual_error);

@@ -65,7 +65,7 @@ static bool find_beside(const char *file, char found[OUTPUT_PATH_SIZE]) {
     for (int k = 0; dot && endings[k]; k++) {
         snprintf(found, OUTPUT_PATH_SIZE, "%.*s.%s", (int)fmin(dot - file, OUTPUT_PATH_SIZE - 16),
                  file, endings[k]);
-        if (access(found, R_OK) == 0)
+        if (strcmp(found, file) != 0 && access(found, R_OK) == 0)
             return true;
     }
     return false;
@@ -74,11 +74,11 @@ static bool find_beside(const char *file, char found[OUTPUT_PATH_SIZE]) {
 void mf_measure_print_nameless(struct progress *progress, const char *file) {
     char beside[OUTPUT_PATH_SIZE];
     const bool found = find_beside(file, beside);
-    mf_progress_print(progress,
-                      "%s tells where atoms are and not what: all are of one type; their types and "
-                      "masses are those of -s %s",
-                      file,
-                      found ? beside : "FILE, a .gro, .pdb, .top, .psf or data file of LAMMPS");
+    mf_progress_print(
+        progress,
+        "%s tells where atoms are and not what: all are taken for one type; give their "
+        "types and masses by -s %s",
+        file, found ? beside : "FILE, a .gro, .pdb, .top, .psf or data file of LAMMPS");
 }
 
 /// Of how far apart pairs, and for how long.

@@ -152,14 +152,14 @@ static void test_xtc_is_measured_with_the_dump_beside_it(void **state) {
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     assert_contains(result.err, "41 snapshots in out/snapshots; trajectory.xtc has no types: ");
     RUN_PROGRAM(&result, "measure", xtc, "-o", "alone");
-    assert_contains(result.err, "masses are those of -s FILE, a .gro");
+    assert_contains(result.err, "give their types and masses by -s FILE, a .gro");
     small_inputs_write(*state, "scene.json", mixed, "FORMATS", "\"xtc\", \"lammps-dump\"");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force");
-    assert_contains(result.err, "41 snapshots in out/snapshots; mesofit measure "
-                                "out/snapshots/trajectory.xtc -s "
-                                "out/snapshots/trajectory.lammpstrj\n");
+    assert_contains(result.err, "41 snapshots in out/snapshots; there: mesofit measure "
+                                "trajectory.xtc -s trajectory.lammpstrj\n");
     RUN_PROGRAM(&result, "measure", xtc, "-o", "alone", "--force");
-    assert_contains(result.err, "masses are those of -s out/snapshots/trajectory.lammpstrj\n");
+    assert_contains(result.err,
+                    "give their types and masses by -s out/snapshots/trajectory.lammpstrj\n");
     RUN_PROGRAM(&result, "measure", xtc, "-s", "out/snapshots/trajectory.lammpstrj", "-o", "told");
     run_program_assert_code(&result, 0);
     assert_contains(result.err, "A: 40 beads of 1 atom, the first of 18 u");

@@ -224,6 +224,10 @@ static void test_move_is_right_when_a_flat_scene_has_two_types(void **state) {
     assert_ok(mf_table_stack(&fluid.potential, parts, 3));
     fluid.setup.composition = (struct composition){.types = 2, .count = {150, COUNT - 150}};
     check_all_sets(&fluid);
+    // More pairs in range than fit into a batch.
+    for (int d = 0; d < 2; d++)
+        fluid.setup.box.length[d] = 2.2 * fluid.potential.cutoff;
+    check_all_sets(&fluid);
     for (int pair = 0; pair < 3; pair++)
         mf_table_clear(&parts[pair]);
     fluid_clear(&fluid);

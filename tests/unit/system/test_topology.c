@@ -107,6 +107,26 @@ static void test_rings_exclude_each_bead_once(void **state) {
     mf_topology_clear(&topology);
 }
 
+/// A-B-B-B-A as snapshots have it, by type; of a star there are no two ends.
+static void test_ends_are_those_of_the_bonds(void **state) {
+    (void)state;
+    static const int type[] = {0, 0, 1, 1, 1};
+    static const int bond[2][4][2] = {{{0, 2}, {4, 1}, {2, 3}, {3, 4}},
+                                      {{0, 2}, {1, 2}, {3, 2}, {4, 2}}};
+    static const int end[2][2] = {{0, 1}, {0, 4}};
+    for (int shape = 0; shape < 2; shape++) {
+        struct topology_kind kind = molecules_chain(1, type, 5, BONDED_BOND, 1);
+        for (int n = 0; n < 4; n++)
+            kind.term[BONDED_BOND][n] =
+                (struct topology_term){.bead = {bond[shape][n][0], bond[shape][n][1]}};
+        struct topology topology;
+        molecules_topology(&topology, kind, (struct topology_kind){0}, 2, NULL);
+        for (int n = 0; n < 2; n++)
+            assert_int_equal(topology.kind[0].end[n], end[shape][n]);
+        mf_topology_clear(&topology);
+    }
+}
+
 static void check_refused(struct topology_kind kind, const char *message) {
     assert_int_equal(mf_topology_check(&kind), STATUS_BAD_INPUT);
     assert_string_equal(mf_status_message(), message);
@@ -233,6 +253,7 @@ int main(void) {
         cmocka_unit_test(test_pairs_inside_are_those_that_can_be_counted),
         cmocka_unit_test(test_beads_within_so_many_bonds_exclude_each_other),
         cmocka_unit_test(test_rings_exclude_each_bead_once),
+        cmocka_unit_test(test_ends_are_those_of_the_bonds),
         cmocka_unit_test(test_terms_that_cannot_be_are_refused),
         cmocka_unit_test(test_a_term_without_its_bonds_is_found),
         cmocka_unit_test(test_a_kind_in_pieces_is_found),

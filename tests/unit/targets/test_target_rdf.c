@@ -56,6 +56,7 @@ static void test_target_read_takes_what_the_table_says_of_its_errors(void **stat
     } cases[] = {
         {FOUR_ROWS, "", TARGET_ERRORS_UNKNOWN},
         {"# errors of samples\n" FOUR_ROWS, "", TARGET_ERRORS_OF_SAMPLES},
+        {"# not errors of samples\n" FOUR_ROWS, "", TARGET_ERRORS_UNKNOWN},
         {"# errors of samples\n" FOUR_ROWS, ", \"error_column\": 0", TARGET_ERRORS_UNKNOWN},
         {"# errors of samples\n" FOUR_ROWS, ", \"errors_of\": \"bins\"", TARGET_ERRORS_OF_BINS}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
