@@ -149,27 +149,13 @@ static void test_one_evaluation_is_told_by_its_error_alone(void **state) {
     assert_summary("finished", "are used up by the first iteration, with an error of ");
 }
 
-static void test_populations_have_finished_when_their_best_agrees(void **state) {
-    static struct run_program_result result;
-    run_fit(*state, PLAN,
-            "\"name\": \"genetic\", \"generations\": 60, \"population\": 12, \"surrogate\": "
-            "\"join\", \"agreements\": 2, \"patience\": 0, \"equilibration\": 50, "
-            "\"samples\": 10, \"every\": 10",
-            &result);
-    run_program_assert_code(&result, 0);
-    assert_summary("finished", "its best has agreed with the targets but for noise 2 times");
-    assert_true(results_number("out/summary.json", "iterations") < 40);
-}
-
 /// Fit the a of the twin, 25, from `minimum` on, by simulations whose own noise of g(r), 0.02, is
 /// three times that of the target.
-static void fit_a(struct temporary_folder *folder, int minimum, int rounds, int seed,
+static void fit_a(struct temporary_folder *folder, const char *name, int minimum, int seed,
                   struct run_program_result *result) {
-    char method[160], seeded[16], numbers[96];
-    snprintf(method, sizeof method,
-             "\"name\": \"cma-es\", \"rounds\": %d, \"agreements\": 1, \"equilibration\": 50, "
-             "\"samples\": 10, \"every\": 10",
-             rounds);
+    char method[192], seeded[16], numbers[96];
+    snprintf(method, sizeof method, "%s, \"equilibration\": 50, \"samples\": 10, \"every\": 10",
+             name);
     snprintf(seeded, sizeof seeded, "\"seed\": %d", seed);
     snprintf(numbers, sizeof numbers,
              "\"numbers\": {\"conservative.a\": {\"minimum\": %d, \"maximum\": 60}}", minimum);
@@ -191,17 +177,29 @@ static void fit_a(struct temporary_folder *folder, int minimum, int rounds, int 
     run_program_assert_code(result, 0);
 }
 
+/// The a of the twin, by 60 generations at most: with seeds 1 to 8 in 11 to 18.
+static void test_populations_have_finished_when_their_best_agrees(void **state) {
+    static struct run_program_result result;
+    fit_a(*state,
+          "\"name\": \"genetic\", \"generations\": 60, \"population\": 12, \"agreements\": 2, "
+          "\"patience\": 0",
+          10, 3, &result);
+    assert_summary("finished", "its best has agreed with the targets but for noise 2 times");
+    assert_true(results_number("out/summary.json", "iterations") < 40);
+}
+
 /// An a of 29 is off by 0.02 in g(r), as much as the noise of a simulation of the fit. By that
 /// noise it was called agreement with all of eight seeds; the truth is found to agree with all of
-/// them.
+/// them, as an a of 24.8 that scatters by 0.45.
+#define CMA_ES(rounds) "\"name\": \"cma-es\", \"rounds\": " rounds ", \"agreements\": 1"
 static void test_populations_have_not_agreed_by_the_noise_of_their_own_simulations(void **state) {
     static struct run_program_result result;
     for (int seed = 1; seed <= (length_is_long() ? 8 : 1); seed++) {
-        fit_a(*state, 29, 14, seed, &result);
+        fit_a(*state, CMA_ES("14"), 29, seed, &result);
         assert_summary("finished", "its \\\"rounds\\\" are used up");
-        fit_a(*state, 10, 25, seed, &result);
+        fit_a(*state, CMA_ES("25"), 10, seed, &result);
         assert_summary("finished", "no larger than that of the targets");
-        assert_close(results_parameter("out/summary.json", "conservative.a", "value"), 25, 1);
+        assert_close(results_parameter("out/summary.json", "conservative.a", "value"), 25, 2);
     }
 }
 
