@@ -36,10 +36,10 @@ static const char scene[] =
 #define PLAN                                                                                       \
     "\"name\": \"imc\", \"replicas\": 8, \"samples\": 400, \"every\": 10, \"precision\": 0.01},\n" \
     "\"verification\": {\"replicas\": 4, \"equilibration\": 1000, \"samples\": 800, \"every\": 40"
-// Four iterations, which are not enough to converge.
+// Seven iterations, which are not enough to converge; after four, one step may be the wrong way.
 #define COARSE_PLAN                                                                                \
     "\"name\": \"imc\", \"replicas\": 4, \"samples\": 100, \"every\": 2, \"precision\": 0.1, "     \
-    "\"iterations\": 4},\n"                                                                        \
+    "\"iterations\": 7},\n"                                                                        \
     "\"verification\": {\"replicas\": 4, \"equilibration\": 1000, \"samples\": 200, \"every\": 40"
 #define SHORT_PLAN                                                                                 \
     "\"name\": \"imc\", \"replicas\": 2, \"samples\": 100, \"precision\": 0.05, \"iterations\": "  \
@@ -89,7 +89,7 @@ static void fit_coarsely(struct temporary_folder *folder, const char *members, c
     assert_in_range(result.code, 0, 1);
 }
 
-/// On its way: with the integrals they are off by 0.3 to 0.4 of what they are without them, the rms
+/// On its way: with the integrals they are off by 0.2 to 0.4 of what they are without them, the rms
 /// of three that are known within a fifth of it.
 static void test_fit_nears_the_integrals_of_molecules(void **state) {
     char members[1024], compared[1100];

@@ -25,7 +25,7 @@ struct made {
     const struct inverse_problem *problems[STATES];
     struct inversion_state state[STATES];
     double target[STATES][BINS], none[BINS], one[BINS], min[BINS], counts[STATES][BINS],
-        variance[STATES][BINS], covariance[STATES][BINS * BINS];
+        excess[STATES][BINS], variance[STATES][BINS], covariance[STATES][BINS * BINS];
 };
 
 /// What U lacks, as Boltzmann inversion sees it.
@@ -69,6 +69,7 @@ static void sample_state(struct made *made, size_t s, double factor) {
     for (size_t k = 0; k < BINS; k++) {
         const double p = made->target[s][k];
         made->counts[s][k] = is_seen(s, k) ? p * factor * exp(wanted(k) / temperature) : 40;
+        made->excess[s][k] = made->counts[s][k] - p;
         made->variance[s][k] = made->counts[s][k] / sampled;
         for (size_t n = 0; n < BINS; n++)
             made->covariance[s][k * BINS + n] = n == k ? p : 0;
@@ -78,6 +79,7 @@ static void sample_state(struct made *made, size_t s, double factor) {
                                               .min = made->min,
                                               .counts = made->target[s],
                                               .error = made->none};
+    state->excess = made->excess[s];
     state->variance = made->variance[s];
     state->response.sampled = made->covariance[s];
     state->replicas.counts = (struct comoments){.count = sampled, .mean = made->counts[s]};
