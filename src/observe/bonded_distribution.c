@@ -285,6 +285,7 @@ static enum status result_of_all(const void *const *states, size_t count,
 }
 
 /// q, then p, error and p over the Jacobian of each group under its name. All have the same bins.
+/// A comment says where all errors are of samples.
 static enum status write_table(const struct bonded_state *s, const char *file,
                                const struct observable_results *results) {
     enum { MAX = 1 + COLUMNS * MOLECULES_MAX_GROUPS };
@@ -294,9 +295,9 @@ static enum status write_table(const struct bonded_state *s, const char *file,
     struct data_column columns[MAX];
     char names[MAX][TOPOLOGY_NAME_SIZE + 32];
     OWNED double *values = NULL;
-    const char *comment;
     char path[OUTPUT_PATH_SIZE];
-    TRY(mf_rdf_observable_comment(results, &comment));
+    bool of_samples;
+    TRY(mf_rdf_observable_is_of_samples(results, &of_samples));
     TRY_ARRAY(values, (1 + COLUMNS * (size_t)groups) * bins);
     for (size_t bin = 0; bin < bins; bin++)
         values[bin] = bonded_bins_centre(&s->bins[0], bin);
@@ -305,6 +306,8 @@ static enum status write_table(const struct bonded_state *s, const char *file,
     for (int g = 0; g < groups; g++) {
         double *own = values + (1 + COLUMNS * (size_t)g) * bins;
         TRY(find_columns(s, g, own));
+        of_samples = of_samples && mf_sample_blocks_are_independent(&s->blocks, s->first[g], bins,
+                                                                    own, own + bins);
         for (int c = 0; c < COLUMNS; c++) {
             const int n = 1 + COLUMNS * g + c;
             snprintf(names[n], sizeof names[n], "%s%s[%s]", s->molecules->group[s->order][g].name,
@@ -314,8 +317,8 @@ static enum status write_table(const struct bonded_state *s, const char *file,
         }
     }
     mf_observable_file(results, file, path);
-    return mf_data_table_write_in(path, results->units, comment, columns,
-                                  (size_t)(1 + COLUMNS * groups), bins);
+    return mf_data_table_write_in(path, results->units, of_samples ? SAMPLE_BLOCKS_COMMENT : NULL,
+                                  columns, (size_t)(1 + COLUMNS * groups), bins);
 }
 
 /// Nanoseconds of a term and sample.

@@ -189,8 +189,6 @@ static enum status write(const void *state, const struct observable_results *res
     for (size_t k = 0; k < bins->count; k++)
         r[k] = mf_rdf_bins_centre(bins, k);
     TRY(mf_rdf_result(rdf, 1, counted, counted_error));
-    const bool of_samples =
-        !force && mf_sample_blocks_are_independent(&rdf->blocks, counted, counted_error);
     if (force)
         TRY(mf_rdf_force_result(&observed->force, 1, RDF_FORCE_COUNTED, g, error));
     for (size_t pair = 0; pair < rdf->pairs; pair++) {
@@ -198,6 +196,9 @@ static enum status write(const void *state, const struct observable_results *res
         if (!mf_composition_has_pairs(&rdf->composition, (int)pair))
             continue;
         mf_statistics_mark_unknown_errors(counted_error + first, bins->count);
+        const bool of_samples =
+            !force && mf_sample_blocks_are_independent(&rdf->blocks, first, bins->count,
+                                                       counted + first, counted_error + first);
         mf_statistics_mark_unknown_errors(error, force ? bins->count : 0);
         const struct data_column columns[5] = {
             {"r[lambda]", r, NULL},
@@ -214,11 +215,11 @@ static enum status write(const void *state, const struct observable_results *res
     return STATUS_OK;
 }
 
-enum status mf_rdf_observable_comment(const struct observable_results *results,
-                                      const char **comment) {
+enum status mf_rdf_observable_is_of_samples(const struct observable_results *results,
+                                            bool *of_samples) {
     const struct observable_use *use = results->use;
     OWNED double *g = NULL, *error = NULL;
-    *comment = NULL;
+    *of_samples = false;
     while (use && use->observable && use->observable != &mf_rdf_observable)
         use++;
     if (use == NULL || use->observable == NULL)
@@ -227,8 +228,7 @@ enum status mf_rdf_observable_comment(const struct observable_results *results,
     TRY_ARRAY(g, rdf->blocks.row);
     TRY_ARRAY(error, rdf->blocks.row);
     TRY(mf_rdf_result(rdf, 1, g, error));
-    if (mf_sample_blocks_are_independent(&rdf->blocks, g, error))
-        *comment = SAMPLE_BLOCKS_COMMENT;
+    *of_samples = mf_sample_blocks_are_independent(&rdf->blocks, 0, rdf->blocks.row, g, error);
     return STATUS_OK;
 }
 

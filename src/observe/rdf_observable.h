@@ -28,11 +28,10 @@ extern const struct observable mf_rdf_intermolecular;
 /// all pairs.
 int mf_rdf_intermolecular_kind(void);
 
-/// The comment of tables with errors of samples (observe/sample_blocks.h), or NULL. What is slow
-/// shows in the pairs that g(r) counts, and what is measured beside them goes by them. Fails:
-/// NO_MEMORY. Tested: test_simulate_pairs.
-enum status mf_rdf_observable_comment(const struct observable_results *results,
-                                      const char **comment) MUST_USE;
+/// Whether g(r) is measured and its errors are of samples (observe/sample_blocks.h): what has few
+/// counts shows less of what is slow. Fails: NO_MEMORY. Tested: test_simulate_pairs.
+enum status mf_rdf_observable_is_of_samples(const struct observable_results *results,
+                                            bool *of_samples) MUST_USE;
 
 /// Path of the table of a pair type, rdf.tsv or in a mixture rdf_A-B.tsv, into OUTPUT_PATH_SIZE
 /// bytes.

@@ -74,14 +74,14 @@ double mf_sample_blocks_mean(const struct sample_blocks *blocks, size_t k, doubl
     return samples > 0 ? sum / samples : NAN;
 }
 
-bool mf_sample_blocks_are_independent(const struct sample_blocks *blocks, const double *mean,
-                                      const double *error) {
+bool mf_sample_blocks_are_independent(const struct sample_blocks *blocks, size_t first,
+                                      size_t count, const double *mean, const double *error) {
     static const double enough = 100, independent = 1.5;
     double sum = 0, seen = 0;
-    for (size_t k = 0; k < blocks->row; k++) {
+    for (size_t k = 0; k < count; k++) {
         double counts = 0;
         for (size_t b = 0; b < blocks->count; b++)
-            counts += blocks->sums[b * blocks->row + k];
+            counts += blocks->sums[b * blocks->row + first + k];
         if (!(counts >= enough) || !(error[k] > 0) || !isfinite(error[k]))
             continue;
         sum += counts * pow(error[k] / mean[k], 2);

@@ -39,13 +39,13 @@ double mf_sample_blocks_mean(const struct sample_blocks *blocks, size_t k, doubl
                              double *error);
 
 /// Whether the errors of means are those of single samples, so that neighbours scatter together as
-/// they do in each sample: the numbers are counts, and the variances of those with enough of them
-/// are in the mean less than 1.5 times those of as many counts that know nothing of each other.
-/// Means of correlated samples have the covariance of what is slow.
-/// @param[in] mean, error  shape [row], of any unit
+/// they do in each sample: the numbers from `first` on are counts, and the variances of those with
+/// enough of them are in the mean less than 1.5 times those of as many counts that know nothing of
+/// each other. Means of correlated samples have the covariance of what is slow.
+/// @param[in] mean, error  shape [count], of any unit
 /// Tested: test_sample_blocks.
-bool mf_sample_blocks_are_independent(const struct sample_blocks *blocks, const double *mean,
-                                      const double *error);
+bool mf_sample_blocks_are_independent(const struct sample_blocks *blocks, size_t first,
+                                      size_t count, const double *mean, const double *error);
 
 /// A comment of tables with such errors, which targets are read by (targets/target_rows.h).
 #define SAMPLE_BLOCKS_COMMENT "errors of samples"

@@ -230,7 +230,7 @@ static void test_simulate_tells_of_pairs_that_stay_together_for_the_whole_run(vo
 }
 
 /// In four units of time this fluid forgets its pairs, in one step it does not. Bond lengths go by
-/// the pairs.
+/// the pairs and their own counts.
 static void test_simulate_says_whether_errors_are_of_samples(void **state) {
     static struct run_program_result result;
     static const char dumbbells[] =

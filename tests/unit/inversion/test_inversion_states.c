@@ -86,7 +86,7 @@ static void sample_state(struct made *made, size_t s, double factor) {
     state->inefficiency = 1;
     state->assessment.sections = 1;
     state->assessment.section[0] =
-        (struct inversion_section){.known_count = BINS, .rms = 1, .noise = 0, .bins = BINS};
+        (struct inversion_section){.known_count = BINS, .bins = BINS};
     assert_ok(mf_inversion_low_rank_init(state));
 }
 
