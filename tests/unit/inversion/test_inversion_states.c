@@ -85,8 +85,7 @@ static void sample_state(struct made *made, size_t s, double factor) {
     state->replicas.counts = (struct comoments){.count = sampled, .mean = made->counts[s]};
     state->inefficiency = 1;
     state->assessment.sections = 1;
-    state->assessment.section[0] =
-        (struct inversion_section){.known_count = BINS, .bins = BINS};
+    state->assessment.section[0] = (struct inversion_section){.known_count = BINS, .bins = BINS};
     assert_ok(mf_inversion_low_rank_init(state));
 }
 
