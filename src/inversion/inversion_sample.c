@@ -103,11 +103,9 @@ struct sampling {
     struct target_distance before[TARGETS]; ///< of the samples before, if there were any
 };
 
-/// Whether the section is so far from its targets that what has not settled hardly changes the way
-/// to them.
-static bool section_is_far_beyond_drift(const struct inversion_state *state,
-                                        const struct inversion_section *section) {
-    const double share = find_share(state, section);
+/// Whether what has not settled hardly changes a section: against what is off there, or its noise.
+static bool section_hardly_drifts(const struct inversion_state *state,
+                                  const struct inversion_section *section) {
     double squares = 0, seen = 0;
     for (size_t a = section->known; a < section->known + section->known_count; a++) {
         const size_t bin = state->grid.known_bin[a];
@@ -115,15 +113,21 @@ static bool section_is_far_beyond_drift(const struct inversion_state *state,
             squares += mf_inversion_equilibrium_shift(&state->replicas, bin) / state->variance[a];
         seen += state->grid.seen[a];
     }
-    return share > 0 && squares < seen * section->misfit * share * share;
+    return squares < seen * fmax(1, section->misfit) * noise_share * noise_share;
 }
 
 bool mf_inversion_is_far_beyond_drift(const struct inversion_state *state) {
+    bool is_off = false;
     if (state->basis.count > 0) // what is off may be out of reach of the gradient
         return false;
-    for (int k = 0; k < state->assessment.sections; k++)
-        if (!section_is_far_beyond_drift(state, &state->assessment.section[k]))
+    for (int k = 0; k < state->assessment.sections; k++) {
+        const struct inversion_section *section = &state->assessment.section[k];
+        if (!section_hardly_drifts(state, section))
             return false;
+        is_off = is_off || find_share(state, section) > 0;
+    }
+    if (!is_off)
+        return false;
     return !mf_inversion_bulk_is_asked(state) ||
            mf_inversion_bulk_shift(state) < noise_share * fabs(mf_inversion_bulk_missing(state));
 }
