@@ -2,6 +2,7 @@
 #include "observe/thermodynamics.h"
 
 #include "base/memory.h"
+#include "base/number_text.h"
 #include "base/statistics.h"
 #include "forces/configurational.h"
 
@@ -257,15 +258,12 @@ enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary 
                           s->temperature, setup->temperature);
 }
 
-enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
-                                         const struct simulation_setup *setup) {
-    const struct thermodynamics_summary *s = summary;
-    const bool held = simulation_holds_temperature(setup);
-    TRY(mf_thermodynamics_assess(summary, setup));
-    TRY(mf_thermodynamics_assess_unheld(summary, setup));
+/// Whether neither temperature is off by more than little. @param[in] remedy  after the numbers
+static enum status assess_closely(const struct thermodynamics_summary *s,
+                                  const struct simulation_setup *setup, const char *remedy) {
     if (!mf_simulation_is_thermal(setup) || s->blocks < MIN_BLOCKS)
         return STATUS_OK;
-    const double wanted = held ? setup->temperature : s->temperature;
+    const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const bool has_velocities = is_off(s->temperature, s->temperature_error, wanted);
     const bool rests = shows_forces(setup) && is_off(s->temperature_configurational,
                                                      s->temperature_configurational_error, wanted);
@@ -274,12 +272,26 @@ enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *su
     const double found = has_velocities ? s->temperature : s->temperature_configurational;
     const double error =
         has_velocities ? s->temperature_error : s->temperature_configurational_error;
-    return mf_status_fail(
-        STATUS_UNSTABLE,
-        "the %s temperature is %.3f(%.0f), %.1f %% off: the time step is long for this potential, "
-        "or its force ends abruptly; test it by a shorter \"verification.time_step\"",
-        has_velocities ? "kinetic" : "configurational", found, ceil(1e3 * error),
-        100 * (found - wanted) / wanted);
+    char off[NUMBER_TEXT_SIZE];
+    mf_number_text(100 * (found / wanted - 1), 100 * error / wanted, off);
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "the %s temperature is %s %% off: the time step is long for this "
+                          "potential, or its force ends abruptly; %s",
+                          has_velocities ? "kinetic" : "configurational", off, remedy);
+}
+
+enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *s,
+                                         const struct simulation_setup *setup) {
+    TRY(mf_thermodynamics_assess(s, setup));
+    TRY(mf_thermodynamics_assess_unheld(s, setup));
+    return assess_closely(s, setup, "test it by a shorter \"verification.time_step\"");
+}
+
+enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *s,
+                                          const struct simulation_setup *setup) {
+    if (setup->integrator->samples) // in no time
+        return STATUS_OK;
+    return assess_closely(s, setup, "lower \"time_step\"");
 }
 
 struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,

@@ -94,6 +94,11 @@ enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary 
 enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
                                          const struct simulation_setup *setup) MUST_USE;
 
+/// The same of a simulation whose friction holds its temperature, for a warning: not of Monte
+/// Carlo. Fails: UNSTABLE. Tested: test_thermodynamics.
+enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *summary,
+                                          const struct simulation_setup *setup) MUST_USE;
+
 /// How far off the temperatures of a summary are, relative to the one that they should have: that
 /// of the setup or, where nothing holds it, the kinetic one. Of both the one that is farther off by
 /// its error, or by 1 % where that is larger. `known` is false with fewer than five blocks, and

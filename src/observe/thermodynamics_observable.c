@@ -169,6 +169,8 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     if (mf_thermodynamics_assess_unheld(&s, setup) != STATUS_OK)
         return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());
     TRY(assess_change(t, &s, setup));
+    if (mf_thermodynamics_assess_step(&s, setup) != STATUS_OK)
+        return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());
     TRY(mf_equilibration_check("potential energy", "k_B T_0",
                                mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
                                t->series.count));
