@@ -367,6 +367,8 @@ static enum status follow(struct measured_motion *motion, const struct trajector
                           const struct configuration *configuration) {
     TRY(check_frame(motion, beads));
     const double *const state = mf_measured_path_add(&motion->path, beads, configuration->fraction);
+    if (state && configuration->particles)
+        TRY(mf_motion_see_molecules(&motion->motion, configuration->particles));
     if (state)
         mf_motion_add(&motion->motion, state, motion->plan.threads);
     TRY(add_pairs(motion, beads, configuration));

@@ -146,12 +146,15 @@ static enum status write(const void *state, const struct observable_results *res
 static void write_summary(const void *state, const struct observable_results *results,
                           struct json_writer *writer) {
     const struct state *s = state;
+    char early[MOTION_EARLY_SIZE];
     (void)results;
     mf_json_begin(writer, "molecule_motion");
     for (int k = 0; k < s->molecules->topology.kinds; k++) {
         struct motion_summary found = mf_motion_result(&s->motion[k], NULL);
         mf_statistics_mark_unknown_errors(&found.msd_error, 1);
         mf_json_begin(writer, s->molecules->topology.kind[k].name);
+        if (mf_motion_is_early(&found))
+            mf_json_write_text(writer, "warning", mf_motion_early_text(&found, early));
         mf_json_put_measured(writer, "diffusion", "lambda^2/tau", found.msd, found.msd_error);
         mf_json_write_quantity(writer, "fit_begin", "tau", found.fit_begin);
         mf_json_write_quantity(writer, "fit_end", "tau", found.fit_end);
@@ -166,9 +169,10 @@ static void print(const void *state, const struct observable_results *results, c
     const struct state *s = state;
     const struct motion_summary found = mf_motion_result(&s->motion[0], NULL);
     char text[UNITS_MEASURED_SIZE], early[MOTION_EARLY_SIZE];
-    snprintf(line, size, "%s: D = %s of the centres of mass%s", s->molecules->topology.kind[0].name,
+    snprintf(line, size, "%s: D = %s of the centres of mass%s%s",
+             s->molecules->topology.kind[0].name,
              mf_units_measured(results->units, "lambda^2/tau", found.msd, found.msd_error, text),
-             mf_motion_early_text(&found, early));
+             mf_motion_is_early(&found) ? "; " : "", mf_motion_early_text(&found, early));
 }
 
 /// Nanoseconds of a bead and sample, and of a molecule and time origin.

@@ -7,6 +7,7 @@
 #include "base/statistics.h"
 #include "observe/sample_blocks.h"
 #include "system/orientation.h"
+#include "system/whole_molecules.h"
 
 #include <math.h>
 #include <string.h>
@@ -267,6 +268,12 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
     add_present(motion, simulation->particles.threads);
 }
 
+enum status mf_motion_see_molecules(struct motion *motion, const struct particles *particles) {
+    if (particles->topology == NULL || motion->samples % (size_t)motion->plan.lags != 0)
+        return STATUS_OK;
+    return mf_whole_molecules_gyration(particles, &motion->gyration);
+}
+
 void mf_motion_add(struct motion *motion, const double *state, int threads) {
     memcpy(motion->now, state,
            2 * (size_t)motion->dimensions * motion->count * sizeof *motion->now);
@@ -281,6 +288,7 @@ size_t mf_motion_spans(struct motion *motion, struct memory_span *spans) {
     spans[n++] = (struct memory_span){motion->origins, motion->slots * state};
     spans[n++] = (struct memory_span){motion->squares, curves};
     spans[n++] = (struct memory_span){motion->products, curves};
+    spans[n++] = (struct memory_span){&motion->gyration, sizeof motion->gyration};
     return n + mf_maxwell_spans(&motion->maxwell, spans + n);
 }
 
@@ -394,6 +402,7 @@ static void find_growth(const struct motion *motion, struct motion_summary *s) {
         deviations[b] = (sums[last] / end - sums[first] / begin) / (double)motion->each / way;
     }
     s->growth = log(end / begin) / way;
+    s->sizes = motion->gyration > 0 ? begin / motion->gyration : 0;
     s->growth_error = mf_statistics_correlated_error(deviations, blocks, 1);
 }
 

@@ -50,6 +50,7 @@ struct motion {
     double *squares;  ///< shape [blocks, lags + 1]: Σ over origins of the mean |Δr|²  [λ²]
     double *products; ///< shape [blocks, lags + 1]: the same of v · v                 [λ²/τ²]
     struct maxwell maxwell; ///< of configurations a whole window apart
+    double gyration;        ///< mean R_g² of particles that are molecules' beads [λ²], else 0
 };
 
 /// Prepare to sample a simulation from step `begin` on, for `steps` steps. Only windows that end
@@ -87,6 +88,11 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
 /// @param[in] state  shape [2, dimensions, count]: unwrapped positions and velocities
 void mf_motion_add(struct motion *motion, const double *state, int threads);
 
+/// Where particles are beads of molecules, look how large these are, once in a window. Fails:
+/// NO_MEMORY.
+enum status mf_motion_see_molecules(struct motion *motion,
+                                    const struct particles *particles) MUST_USE;
+
 /// What goes with a checkpoint.
 size_t mf_motion_spans(struct motion *motion, struct memory_span *spans);
 
@@ -104,7 +110,8 @@ struct motion_summary {
     double vacf_drop;             ///< 1 − VACF(one interval)/VACF(0)
     double blocks;                ///< of time, complete: what errors rest on
     double fit_begin, fit_end;    ///< the window of the least squares               [τ]
-    double growth, growth_error;    ///< exponent of the MSD over that window: 1 of what diffuses
+    double growth, growth_error; ///< exponent of the MSD over that window: 1 of what diffuses
+    double sizes; ///< MSD at its begin over R_g² of the molecules; 0 without molecules
     struct maxwell_summary maxwell; ///< NaN without friction: no thermostat
 };
 
@@ -126,18 +133,21 @@ struct motion_summary {
 struct motion_summary mf_motion_result(const struct motion *motion,
                                        const struct motion_curves *curves);
 
-/// Whether what moves does not diffuse yet over the window that D is of: it flies, with an exponent
-/// near 2, or is held, as beads of chains are by their molecule, below 1. The exponent must be
-/// below 0.85 or above 1.3, and 3 of its errors from 1; where these are not known, of one window,
-/// it decides alone. Of Brownian paths none of several 100 is told, with 2 to 128 beads and 20 to
-/// 80 windows. Tested: test_motion, test_motion_growth.
+/// Whether beads still move within their molecules where the window of D begins, however their MSD
+/// grows: it is below 5 R_g². Of Rouse's chain D is then 7 % too large or more: their MSD is that
+/// of the centre and 2 R_g² (1 − Σ_p 6/(π p)² exp(−p² t/τ)), and comes to 5 R_g² at t = 2.6 τ.
+/// Tested: test_motion_molecules.
+bool mf_motion_is_within(const struct motion_summary *summary);
+
+/// Whether what moves does not diffuse yet over the window that D is of: it is within its
+/// molecules, or flies, with an exponent near 2, or is held, below 1. The exponent must be below
+/// 0.85 or above 1.3, and 3 of its errors from 1; where these are not known, of one window, it
+/// decides alone. Of Brownian paths none of several 100 is told, with 2 to 128 beads and 20 to 80
+/// windows. Tested: test_motion, test_motion_growth.
 bool mf_motion_is_early(const struct motion_summary *summary);
 
-/// "0.803(21)": the exponent, with its error where that is above a hundredth.
-void mf_motion_growth_text(const struct motion_summary *summary, char text[NUMBER_TEXT_SIZE]);
-
-/// "; no D yet: the MSD still grows as t^0.803(21)" for a line, or "". Returns `text`.
-enum { MOTION_EARLY_SIZE = 96 };
+/// "no D yet: the MSD still grows as t^0.803(21)", or "". Returns `text`.
+enum { MOTION_EARLY_SIZE = 128 };
 const char *mf_motion_early_text(const struct motion_summary *summary,
                                  char text[MOTION_EARLY_SIZE]);
 

@@ -6,13 +6,23 @@
 #include <math.h>
 #include <stdio.h>
 
-bool mf_motion_is_early(const struct motion_summary *s) {
+bool mf_motion_is_within(const struct motion_summary *s) {
+    static const double enough = 5;
+    return s->sizes > 0 && s->sizes < enough;
+}
+
+static bool grows_otherwise(const struct motion_summary *s) {
     static const double least = 0.85, most = 1.3, errors = 3;
     const bool is_far = s->growth < least || s->growth > most;
     return is_far && !(fabs(s->growth - 1) < errors * s->growth_error);
 }
 
-void mf_motion_growth_text(const struct motion_summary *s, char text[NUMBER_TEXT_SIZE]) {
+bool mf_motion_is_early(const struct motion_summary *s) {
+    return mf_motion_is_within(s) || grows_otherwise(s);
+}
+
+/// "0.803(21)": the exponent, with its error where that is above a hundredth.
+static void print_growth(const struct motion_summary *s, char text[NUMBER_TEXT_SIZE]) {
     static const double rounded = 0.01;
     if (s->growth_error >= rounded)
         mf_number_text(s->growth, s->growth_error, text);
@@ -22,10 +32,14 @@ void mf_motion_growth_text(const struct motion_summary *s, char text[NUMBER_TEXT
 
 const char *mf_motion_early_text(const struct motion_summary *s, char text[MOTION_EARLY_SIZE]) {
     char growth[NUMBER_TEXT_SIZE];
-    mf_motion_growth_text(s, growth);
+    print_growth(s, growth);
     text[0] = '\0';
-    if (mf_motion_is_early(s))
-        snprintf(text, MOTION_EARLY_SIZE, "; no D yet: the MSD still grows as t^%s", growth);
+    if (grows_otherwise(s))
+        snprintf(text, MOTION_EARLY_SIZE, "no D yet: the MSD still grows as t^%s", growth);
+    else if (mf_motion_is_within(s))
+        snprintf(text, MOTION_EARLY_SIZE,
+                 "no D yet: beads still move within their molecules, the MSD begins at %.2g R_g^2",
+                 s->sizes);
     return text;
 }
 

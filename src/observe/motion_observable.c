@@ -26,6 +26,7 @@ static int64_t due(const void *state) {
 
 static enum status sample(void *state, const struct configuration *configuration) {
     const struct simulation *const simulation = configuration->simulation;
+    TRY(mf_motion_see_molecules(state, &simulation->particles));
     mf_motion_sample(state, simulation);
     return STATUS_OK;
 }
@@ -70,7 +71,10 @@ static void write_summary(const void *state, const struct observable_results *re
     struct motion_summary s = mf_motion_result(state, NULL);
     mf_json_begin(writer, "motion");
     mf_statistics_mark_unknown_errors(&s.msd_error, 1);
-    if (mf_units_convert_message(units, mf_motion_assess(&s)) != STATUS_OK)
+    char early[MOTION_EARLY_SIZE];
+    if (mf_motion_is_early(&s))
+        mf_json_write_text(writer, "warning", mf_motion_early_text(&s, early));
+    else if (mf_units_convert_message(units, mf_motion_assess(&s)) != STATUS_OK)
         mf_json_write_text(writer, "warning", mf_status_message());
     mf_json_put_measured(writer, "diffusion_msd", "lambda^2/tau", s.msd, s.msd_error);
     write_infinite(&s, results, writer);
@@ -111,11 +115,12 @@ static void print(const void *state, const struct observable_results *results, c
     const double time = mf_units_factor(units, "tau");
     mf_number_text(factor * s.green_kubo, factor * mf_motion_green_kubo_uncertainty(&s),
                    green_kubo);
-    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g %s%s%s%s%s",
+    snprintf(line, size, "D = %s by the MSD from %.4g to %.4g %s%s%s%s%s%s",
              mf_units_measured(units, "lambda^2/tau", s.msd, s.msd_error, msd), time * s.fit_begin,
              time * s.fit_end, mf_units_name(units, "tau", time_unit),
              motion->has_velocities ? ", " : "", motion->has_velocities ? green_kubo : "",
-             motion->has_velocities ? " by Green and Kubo" : "", mf_motion_early_text(&s, early));
+             motion->has_velocities ? " by Green and Kubo" : "", mf_motion_is_early(&s) ? "; " : "",
+             mf_motion_early_text(&s, early));
 }
 
 static enum status assess(const void *state, const struct simulation_setup *setup) {

@@ -3,6 +3,8 @@
 
 #include "base/memory.h"
 
+#include <math.h>
+
 enum status mf_whole_molecules_init(struct whole_molecules *whole,
                                     const struct topology *topology) {
     const size_t kinds = (size_t)topology->kinds;
@@ -41,4 +43,35 @@ void mf_whole_molecules_make(struct whole_molecules *whole, const struct particl
                 box_nearest(particles->position[d][here] - particles->position[d][there],
                             particles->box.length[d]);
     }
+}
+
+/// Σ |r_i − r_cm|² of the molecule that was made whole.
+static double sum_squares(const struct whole_molecules *whole, int beads) {
+    double squares = 0, centre[3] = {0};
+    for (int bead = 0; bead < beads; bead++)
+        for (int d = 0; d < 3; d++) {
+            squares += whole->place[bead][d] * whole->place[bead][d];
+            centre[d] += whole->place[bead][d];
+        }
+    for (int d = 0; d < 3; d++)
+        squares -= centre[d] * centre[d] / beads;
+    return squares;
+}
+
+enum status mf_whole_molecules_gyration(const struct particles *particles, double *gyration) {
+    const struct topology *topology = particles->topology;
+    double squares = 0, beads = 0;
+    *gyration = NAN;
+    if (topology == NULL)
+        return STATUS_OK;
+    CLEARED_BY(mf_whole_molecules_clear) struct whole_molecules whole = {0};
+    TRY(mf_whole_molecules_init(&whole, topology));
+    for (int k = 0; k < topology->kinds; k++)
+        for (int64_t m = 0; m < topology->kind[k].count; m++) {
+            mf_whole_molecules_make(&whole, particles, k, m);
+            squares += sum_squares(&whole, topology->kind[k].beads);
+            beads += topology->kind[k].beads;
+        }
+    *gyration = squares / beads;
+    return STATUS_OK;
 }

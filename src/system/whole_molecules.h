@@ -23,3 +23,8 @@ void mf_whole_molecules_clear(struct whole_molecules *whole);
 /// Tested: cli and physics test_molecules.
 void mf_whole_molecules_make(struct whole_molecules *whole, const struct particles *particles,
                              int kind, int64_t m);
+
+/// The mean of R_g² over all beads of molecules, of equal masses [λ²]; NaN of particles that are
+/// not joined. Fails: NO_MEMORY. Tested: test_motion_molecules.
+enum status mf_whole_molecules_gyration(const struct particles *particles,
+                                        double *gyration) MUST_USE;

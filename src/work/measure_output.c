@@ -145,10 +145,13 @@ static void write_temperature(const struct measure_result *result, struct json_w
 /// D by the MSD, and by the VACF if there is one.
 static void write_diffusion(const struct measure_result *result, struct json_writer *writer) {
     const double unit = mf_units_diffusion_cm2_per_s(&result->units);
+    char early[MOTION_EARLY_SIZE];
     if (!mf_measure_tables_have_motion(result))
         return;
     struct motion_summary s = mf_motion_result(&result->measured->motion.motion, NULL);
     mf_statistics_mark_unknown_errors(&s.msd_error, 1);
+    if (mf_motion_is_early(&s))
+        mf_json_write_text(writer, "diffusion_warning", mf_motion_early_text(&s, early));
     mf_json_put_measured(writer, "diffusion", "lambda^2/tau", s.msd, s.msd_error);
     mf_json_write_number(writer, "diffusion_cm2_per_s", s.msd * unit);
     mf_json_write_number(writer, "diffusion_error_cm2_per_s", s.msd_error * unit);

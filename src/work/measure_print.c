@@ -20,9 +20,8 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
     const struct measured_motion *const motion = &result->measured->motion;
     const struct motion_summary s = mf_motion_result(&motion->motion, NULL);
     char diffusion[UNITS_MEASURED_SIZE], unit[UNITS_NAME_SIZE], of_time[UNITS_NAME_SIZE];
-    char growth[NUMBER_TEXT_SIZE];
+    char early[MOTION_EARLY_SIZE];
     const double time = find_unit(result, "tau", of_time);
-    mf_motion_growth_text(&s, growth);
     mf_progress_print(
         progress,
         "D = %s by the MSD from %.4g to %.4g %s, for this box: a larger "
@@ -31,9 +30,10 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
         time * s.fit_begin, time * s.fit_end, of_time);
     if (mf_motion_is_early(&s))
         mf_progress_print(progress,
-                          "mesofit: warning: no D yet: the MSD still grows as t^%s there: the "
-                          "beads do not diffuse; a longer trajectory has a D%s",
-                          growth, s.growth < 1 && result->kinds ? ", that of the molecules" : "");
+                          "mesofit: warning: %s: the beads do not diffuse; a longer trajectory "
+                          "has a D%s",
+                          mf_motion_early_text(&s, early),
+                          result->kinds ? ", that of the molecules" : "");
     const struct measured_path *const path = &motion->path;
     if (path->far > 0)
         mf_progress_print(

@@ -117,6 +117,42 @@ static void test_brownian_chains_diffuse_as_rouse_says(void **state) {
     }
 }
 
+/// Chains whose beads' MSD grows as t between their flights and their molecules' hold: no D.
+static void test_beads_that_move_within_their_molecules_have_no_diffusion(void **state) {
+    static const char chains[] =
+        "{\"seed\": 7, \"box\": [7, 7, 7], \"time_step\": 0.01,\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\"},\n"
+        "\"bonds\": {\"spring\": {\"law\": \"harmonic\", \"k\": 10, \"length\": 0.8}},\n"
+        "\"molecules\": {\"seven\": {\"count\": 60, \"chain\": {\"type\": \"A\", \"length\": 7,\n"
+        "\"bond\": \"spring\"}}},\n"
+        "\"dynamics\": {\"integrator\": \"velocity-verlet\"}, \"molecule_sizes\": {},\n"
+        "\"motion\": {\"every\": 10, \"lags\": LAGS, \"origin_every\": 2},\n"
+        "\"measure\": {\"equilibration\": 1000, \"samples\": 1000, \"every\": 10}}\n";
+    static const char within[] =
+        "no D yet: beads still move within their molecules, the MSD begins";
+    double rows[64][8], soon;
+    small_inputs_write(*state, "scene.json", chains, "LAGS", "12");
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 0);
+    assert_non_null(strstr(result.err, within));
+    assert_int_equal(read_rows("out/motion.tsv", rows, 64, 3), 13);
+    const double gyration =
+        results_number("out/summary.json", "molecule_sizes.seven.gyration_squared");
+    // R_g^2 of one configuration of 60 chains.
+    assert_close(strtod(strstr(result.err, "begins at ") + 10, NULL), rows[6][1] / gyration,
+                 0.15 * rows[6][1] / gyration);
+    char line[160];
+    snprintf(line, sizeof line, "%.*s", (int)strcspn(strstr(result.err, within), "\n"),
+             strstr(result.err, within));
+    results_assert_text("out/summary.json", "motion.warning", line);
+    soon = results_number("out/summary.json", "motion.diffusion_msd");
+    small_inputs_write(*state, "long.json", chains, "LAGS", "400");
+    RUN_PROGRAM(&result, "simulate", "long.json", "-o", "long");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "no D yet"));
+    assert_true(results_number("long/summary.json", "motion.diffusion_msd") < 0.6 * soon);
+}
+
 static void test_motion_of_molecules_goes_on_with_the_same_bits(void **state) {
     static const char *const tables[] = {"molecule_motion.tsv", "motion.tsv", NULL};
     simulate(*state, beads, "whole");
@@ -189,6 +225,7 @@ int main(void) {
         IN_FOLDER(test_molecules_of_one_bead_move_as_the_bead_does),
         IN_FOLDER(test_centres_are_those_of_mass),
         IN_FOLDER(test_brownian_chains_diffuse_as_rouse_says),
+        IN_FOLDER(test_beads_that_move_within_their_molecules_have_no_diffusion),
         IN_FOLDER(test_motion_of_molecules_goes_on_with_the_same_bits),
         IN_FOLDER(test_molecules_begin_between_plates_and_outside_obstacles),
         IN_FOLDER(test_beads_without_hydrodynamics_diffuse_by_molecular_chaos),

@@ -122,10 +122,10 @@ static void test_the_line_has_the_exponent_with_its_error(void **state) {
     char text[MOTION_EARLY_SIZE];
     assert_string_equal(mf_motion_early_text(
                             &(struct motion_summary){.growth = 0.803, .growth_error = 0.021}, text),
-                        "; no D yet: the MSD still grows as t^0.803(21)");
+                        "no D yet: the MSD still grows as t^0.803(21)");
     assert_string_equal(
         mf_motion_early_text(&(struct motion_summary){.growth = 1.998, .growth_error = 1e-9}, text),
-        "; no D yet: the MSD still grows as t^2.00");
+        "no D yet: the MSD still grows as t^2.00");
     assert_string_equal(
         mf_motion_early_text(&(struct motion_summary){.growth = 0.803, .growth_error = 0.08}, text),
         "");
