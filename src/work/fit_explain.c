@@ -81,8 +81,10 @@ static enum status print_sampling(const struct fit_file *fit) {
     const struct inversion_parameters *p = fit->method_parameters;
     const struct simulation_setup *setup = &fit->scene.setup;
     const double count = (double)(p->particles > 0 ? p->particles : setup->placement.count);
-    const double replicas = (double)p->replicas,
-                 range = mf_rdf_bins_range(&fit->problem.targets.bins);
+    const double replicas = (double)p->replicas;
+    // Without a g(r) the potential is known, and has a cutoff.
+    const double range =
+        fmax(mf_rdf_bins_range(&fit->problem.targets.bins), mf_stages_cutoff(setup));
     struct fit_scales_rdf rdf;
     char time[TIME_SIZE];
     if (fit->engine.kind != ENGINE_NONE) {
@@ -90,7 +92,7 @@ static enum status print_sampling(const struct fit_file *fit) {
         return STATUS_OK;
     }
     printf("The method \"%s\" samples by a Monte Carlo of its own, not by the dynamics of the "
-           "scene: %.0f particles, %.0f others within the range of g(r) of each.\n",
+           "scene: %.0f particles, %.0f others within range of each.\n",
            fit->method->name, count, 2 * mf_stages_pairs_within(setup, range));
     const bool molecules = scene_has_molecules(&fit->scene.molecules);
     if (molecules && p->sampler == SAMPLER_MONTE_CARLO)
@@ -105,7 +107,7 @@ static enum status print_sampling(const struct fit_file *fit) {
                                    : mf_explain_sweep(setup, count, range);
     print_time(sweeps * sweep / fit->problem.threads, time);
     printf(
-        "Each of the last iterations, whose g is known within %.2g, takes about %.2g sweeps, "
+        "Each of the last iterations, exact within %.2g, takes about %.2g sweeps, "
         "those of its %lld replicas together, and %s with %d thread%s of a processor of 2024, if "
         "samples are as independent as usual; %sa pressure as a target takes more. A fit has some "
         "four to twenty iterations, and most of the first ones are shorter.\n",

@@ -343,6 +343,43 @@ static void test_beads_in_another_order_than_their_atoms_are_told(void **state) 
     }
 }
 
+/// Pairs in a box of 4 nm, each of 0.3 nm: bead after bead, or all first beads before all others.
+static void write_pairs(bool in_order) {
+    enum { PAIRS = 150 };
+    FILE *stream = fopen("pairs.gro", "w");
+    assert_non_null(stream);
+    srand(5);
+    double at[PAIRS][3];
+    for (int k = 0; k < PAIRS; k++)
+        for (int d = 0; d < 3; d++)
+            at[k][d] = 0.01 + 3.6 * uniform();
+    fprintf(stream, "pairs\n%d\n", 2 * PAIRS);
+    for (int n = 0; n < 2 * PAIRS; n++) {
+        const int pair = in_order ? n / 2 : n % PAIRS, second = in_order ? n % 2 : n / PAIRS;
+        fprintf(stream, "%5dDIM      A%5d%8.3f%8.3f%8.3f\n", n + 1, n + 1,
+                at[pair][0] + 0.3 * second, at[pair][1], at[pair][2]);
+    }
+    fprintf(stream, "   4.0 4.0 4.0\n");
+    fclose(stream);
+}
+
+static void test_bonds_of_beads_in_another_order_are_told(void **state) {
+    static struct run_program_result result;
+    small_inputs_write(*state, "dimers.json",
+                       "{\"molecules\": {\"dimer\": {\"beads\": [\"A\", \"A\"],\n"
+                       "\"bonds\": {\"AA\": [[1, 2]]}}}}\n",
+                       NULL, NULL);
+    for (int k = 0; k < 2; k++) {
+        write_pairs(k == 0);
+        RUN_PROGRAM(&result, "measure", "pairs.gro", "--molecules", "dimers.json", "-o", "target");
+        run_program_assert_code(&result, 0);
+        // Half the box is 2 nm.
+        const char *const told = strstr(result.err, "warning: bonds \"AA\" are 1.");
+        assert_true((told != NULL) == (k == 1));
+        assert_true(told == NULL || strstr(told, "in the order of the trajectory?"));
+    }
+}
+
 static void test_molecules_that_are_not_there_are_refused(void **state) {
     static const struct {
         const char *from, *to, *words[3];
@@ -421,6 +458,7 @@ int main(void) {
         TEST(test_cut_molecules_in_a_skewed_box_are_whole),
         TEST(test_lengths_have_bins_for_the_narrowest_bond),
         TEST(test_beads_in_another_order_than_their_atoms_are_told),
+        TEST(test_bonds_of_beads_in_another_order_are_told),
         TEST(test_molecules_that_are_not_there_are_refused),
         TEST(test_masses_are_those_of_the_scene),
     };
