@@ -124,8 +124,64 @@ static void doubt_terms(const struct scene *scene, const struct scene_doubts_lis
         }
 }
 
+/// The deepest well of any pair type, in units of k_B T.
+static double find_well(const struct table *potential, double temperature) {
+    enum { PLACES = 500 };
+    double least = 0;
+    for (int pair = 0; pair < potential->curves; pair++)
+        for (int k = 1; k < PLACES; k++) {
+            double value;
+            mf_table_evaluate_pair(potential, pair, potential->cutoffs[pair] * k / PLACES, &value,
+                                   NULL, NULL);
+            least = fmin(least, value);
+        }
+    return -least / temperature;
+}
+
+/// The largest force of any pair type at its cutoff, times the cutoff, in units of k_B T.
+static double find_end(const struct table *potential, double temperature, double *cutoff) {
+    static const double nearly = 1 - 1e-6;
+    double most = 0;
+    for (int pair = 0; pair < potential->curves; pair++) {
+        const double end = potential->cutoffs[pair];
+        double slope;
+        mf_table_evaluate_pair(potential, pair, nearly * end, NULL, &slope, NULL);
+        if (end * fabs(slope) > most) {
+            most = end * fabs(slope);
+            *cutoff = end;
+        }
+    }
+    return most / temperature;
+}
+
+static void doubt_potential(const struct scene *scene,
+                            const struct scene_doubts_listener *listener) {
+    // Ions of a molten salt have 50, argon at its triple point 1.4.
+    static const double deepest = 80, abrupt = 20;
+    const struct table *potential = scene->setup.potential;
+    const double temperature = scene->setup.temperature;
+    double cutoff = 0;
+    if (potential == NULL || !(temperature > 0))
+        return;
+    const double well = find_well(potential, temperature);
+    const double end = find_end(potential, temperature, &cutoff);
+    char unit[UNITS_NAME_SIZE];
+    if (well > deepest)
+        tell(listener,
+             "conservative: a well of %.3g k_B T, in which beads stay for ever: is its energy in "
+             "another unit?",
+             well);
+    if (end > abrupt)
+        tell(listener,
+             "conservative: the force ends abruptly at the cutoff, %.4g%s, where it is still %.2g "
+             "k_B T over that length: is the cutoff, or a length, in another unit?",
+             mf_units_factor(&scene->units, "lambda") * cutoff,
+             mf_units_suffix(&scene->units, "lambda", unit), end);
+}
+
 void mf_scene_doubts(const struct scene *scene, const struct scene_doubts_listener *listener) {
     doubt_temperature(scene, listener);
     doubt_time_step(scene, listener);
     doubt_terms(scene, listener);
+    doubt_potential(scene, listener);
 }

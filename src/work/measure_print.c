@@ -29,11 +29,9 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
         mf_units_measured(&result->units, "lambda^2/tau", s.msd, s.msd_error, diffusion),
         time * s.fit_begin, time * s.fit_end, of_time);
     if (mf_motion_is_early(&s))
-        mf_progress_print(progress,
-                          "mesofit: warning: %s: the beads do not diffuse; a longer trajectory "
-                          "has a D%s",
-                          mf_motion_early_text(&s, early),
-                          result->kinds ? ", that of the molecules" : "");
+        mf_progress_print(
+            progress, "mesofit: warning: %s; a longer trajectory, or --window, has a D%s",
+            mf_motion_early_text(&s, early), result->kinds ? ", that of the molecules" : "");
     const struct measured_path *const path = &motion->path;
     if (path->far > 0)
         mf_progress_print(

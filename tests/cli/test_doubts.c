@@ -108,6 +108,21 @@ static void test_bonds_in_angstrom_and_angles_in_radians_are_doubted(void **stat
     assert_doubted(*state, "simulate", scene, "0.003", "0.3", "warning: time_step: in 0.3 ps");
 }
 
+/// Energies in kelvins, a length that is another, a cutoff in the unit of another file.
+static void test_potentials_that_hold_or_end_as_none_does_are_doubted(void **state) {
+    static const char beads[] =
+        "{\"box\": [9, 9, 9], \"particles\": {\"count\": 400}, \"time_step\": 1e-4,\n"
+        "\"conservative\": {\"law\": \"lennard-jones\", \"epsilon\": 1, \"sigma\": 1, "
+        "\"cutoff\": 2.5},\n"
+        "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
+        "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n";
+    assert_doubted(*state, "simulate", beads, "\"epsilon\": 1,", "\"epsilon\": 119.8,",
+                   "warning: conservative: a well of 118 k_B T, in which beads stay for ever");
+    // 24 (2 (3/2.5)^12 - (3/2.5)^6) is 356.
+    assert_doubted(*state, "simulate", beads, "\"sigma\": 1,", "\"sigma\": 3,",
+                   "the force ends abruptly at the cutoff, 2.5, where it is still 3.6e+02 k_B T");
+}
+
 /// A scene without a time step: by the rule of a fit's verification; ten times that is doubted.
 static void test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted(void **state) {
     static const char beads[] =
@@ -215,6 +230,7 @@ int main(void) {
         TEST(test_bonds_take_no_steps_of_their_own_where_all_forces_are_followed),
         TEST(test_long_time_step_of_molecules_is_doubted_in_fits),
         TEST(test_bonds_in_angstrom_and_angles_in_radians_are_doubted),
+        TEST(test_potentials_that_hold_or_end_as_none_does_are_doubted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
