@@ -67,17 +67,23 @@ static void doubt_time_step(const struct scene *scene,
     const double step = setup->time_step, factor = mf_units_factor(&scene->units, "tau");
     char unit[UNITS_NAME_SIZE];
     mf_units_name(&scene->units, "tau", unit);
-    if (step > times_free * usual.free)
+    const double free = step / (times_free * usual.free),
+                 pairs = step / (times_of_pairs * usual.pairs),
+                 bonds = step / (times_of_bonds * usual.bonds);
+    const double worst = fmax(free, fmax(pairs, bonds));
+    if (!(worst > 1))
+        return;
+    if (worst == free)
         tell(listener,
              "time_step: in %.4g %s a bead moves %.2g of the distance to its neighbours, which no "
              "forces follow; a fiftieth is usual, %.2g %s",
              factor * step, unit, step / mf_scene_scales(scene).time, factor * usual.free, unit);
-    else if (step > times_of_pairs * usual.pairs)
+    else if (worst == pairs)
         tell(listener,
              "time_step: %.4g %s is %.2g times as long as this potential allows if the "
              "configurational temperature is to be right within 1 %%, %.2g %s",
              factor * step, unit, step / usual.pairs, factor * usual.pairs, unit);
-    else if (step > times_of_bonds * usual.bonds)
+    else
         tell(listener,
              "time_step: %.4g %s is %.2g times as long as bonds, angles and dihedrals allow if "
              "their distributions are to be right within 0.3 %% of their variance, %.2g %s",

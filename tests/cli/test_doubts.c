@@ -105,7 +105,8 @@ static void test_bonds_in_angstrom_and_angles_in_radians_are_doubted(void **stat
                    "warning: bonds.bond: a bond of 1.5 nm, where beads have a mean distance of");
     assert_doubted(*state, "simulate", scene, "110", "1.92",
                    "warning: angles.bend: an angle of 1.92 degrees lets beads overlap");
-    assert_doubted(*state, "simulate", scene, "0.003", "0.3", "warning: time_step: in 0.3 ps");
+    assert_doubted(*state, "simulate", scene, "0.003", "0.3",
+                   "warning: time_step: 0.3 ps is 41 times as long as bonds");
 }
 
 /// Energies in kelvins, a length that is another, a cutoff in the unit of another file.
@@ -136,7 +137,8 @@ static void test_time_step_of_a_scene_is_chosen_and_a_long_one_doubted(void **st
     } cases[] = {
         {beads, "\"time_step\": 0,", NULL, NULL,
          "chosen: time step 0.02 tau: beads move a fiftieth of the distance to their neighbours",
-         "0.02", "0.2", "warning: time_step: in 0.2 tau a bead moves 0.19 of the distance", 0.02},
+         "0.02", "0.2", "warning: time_step: 0.2 tau is 7.1 times as long as this potential allows",
+         0.02},
         {beads, "\"time_step\": 0,", "\"law\": \"soft-repulsion\", \"a\": 25",
          "\"law\": \"lennard-jones\", \"cutoff\": 2.5",
          "chosen: time step 0.003 tau: the curvature of the potential is up to ", "0.003", "0.03",
