@@ -287,9 +287,17 @@ enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *s,
     return assess_closely(s, setup, "test it by a shorter \"verification.time_step\"");
 }
 
+/// Whether a flow that is driven may be in the velocities.
+static bool flows(const struct simulation_setup *setup) {
+    bool driven = !shows_forces(setup); // a solvent carries beads along
+    for (int k = 0; k < setup->interactions; k++)
+        driven = driven || setup->interaction[k].kind->does_work;
+    return driven;
+}
+
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *s,
                                           const struct simulation_setup *setup) {
-    if (setup->integrator->samples) // in no time
+    if (setup->integrator->samples || flows(setup)) // in no time, or hot by the flow
         return STATUS_OK;
     return assess_closely(s, setup, "lower \"time_step\"");
 }

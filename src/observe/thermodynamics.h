@@ -94,8 +94,8 @@ enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary 
 enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
                                          const struct simulation_setup *setup) MUST_USE;
 
-/// The same of a simulation whose friction holds its temperature, for a warning: not of Monte
-/// Carlo. Fails: UNSTABLE. Tested: test_thermodynamics.
+/// The same of a simulation, for a warning: not of Monte Carlo, nor where a flow may be driven.
+/// Fails: UNSTABLE. Tested: test_thermodynamics.
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *summary,
                                           const struct simulation_setup *setup) MUST_USE;
 
