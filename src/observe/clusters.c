@@ -207,7 +207,7 @@ static const struct field fields[] = {
      .minimum = FIELD_ABOVE_ZERO, .maximum = DBL_MAX, .unit = "lambda",
      .help = "largest distance of neighbours, at most the range of the interactions"},
     {"types", FIELD_TEXT, offsetof(struct settings, types), .unit = "",
-     .help = "types whose particles count, as \"T\" or \"H T\"; without it all do"},
+     .help = "types that count, as \"T\" or \"H T\"; else all"},
     FIELD_END,
 };
 static const char *const files[] = {"clusters.tsv", NULL};

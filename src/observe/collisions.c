@@ -37,7 +37,7 @@ struct settings {
 #define MEMBER(name) .offset = offsetof(struct settings, name)
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 50, .minimum = 1, .maximum = 10000, .unit = "",
-     .help = "number of bins of the speed distribution, up to five thermal speeds"},
+     .help = "bins of the speed distribution, up to five thermal speeds"},
     FIELD_END,
 };
 

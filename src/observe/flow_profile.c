@@ -40,7 +40,7 @@ struct profile {
 
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 0, .minimum = 0,
-     .maximum = 1e5, .unit = "", .help = "number of bins along y; 0: one a cell"},
+     .maximum = 1e5, .unit = "", .help = "bins along y; 0: one a cell"},
     FIELD_END,
 };
 

@@ -14,7 +14,7 @@
 /// Of which nothing else knows.
 extern const struct observable mf_snapshots, mf_polarity_observable;
 extern const struct observable mf_clusters, mf_local_density, mf_collisions, mf_conserved;
-extern const struct observable mf_molecule_motion, mf_slab;
+extern const struct observable mf_molecule_motion, mf_slab, mf_pressure_tensor;
 
 #define BONDED(NAME, kind, ...) &mf_bonded_distribution_##kind,
 
@@ -40,6 +40,7 @@ const struct observable *const mf_observables[] = {
     &mf_kirkwood_buff_observable,
     &mf_conserved,
     &mf_slab,
+    &mf_pressure_tensor,
     &mf_weighted_density,
     NULL,
 };

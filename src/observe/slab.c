@@ -377,8 +377,7 @@ static void explain(const void *settings, const struct simulation_setup *setup, 
 
 static const struct field fields[] = {
     {"bins", FIELD_INTEGER, offsetof(struct settings, bins), .initial = 0, .minimum = 0,
-     .maximum = 100000, .unit = "",
-     .help = "number of bins along the longest edge of the box; 0: 200"},
+     .maximum = 100000, .unit = "", .help = "bins along the longest edge; 0: 200"},
     FIELD_END,
 };
 static const char *const files[] = {"slab.tsv", NULL};

@@ -182,7 +182,7 @@ static const struct field fields[] = {
      .maximum = DBL_MAX, .unit = "1/lambda",
      .help = "largest wave number; the cost grows as its cube"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 100, .minimum = 1, .maximum = 100000,
-     .unit = "", .help = "number of bins from 0"},
+     .unit = "", .help = "bins from 0"},
     {"waves", FIELD_INTEGER, MEMBER(waves), .initial = 0, .minimum = 0, .maximum = 1e6, .unit = "",
      .help = "most waves of a bin, evenly chosen of more; 0: all"},
     FIELD_END,

@@ -246,7 +246,7 @@ const struct field mf_weighted_density_fields[] = {
     {"cutoff", FIELD_NUMBER, MEMBER(cutoff), .required = true, .minimum = FIELD_ABOVE_ZERO,
      .maximum = DBL_MAX, .unit = "lambda", .help = "r_c: the weight is 0 beyond it"},
     {"bins", FIELD_INTEGER, MEMBER(bins), .initial = 200, .minimum = 1, .maximum = 100000,
-     .unit = "", .help = "number of bins from 0"},
+     .unit = "", .help = "bins from 0"},
     {"maximum", FIELD_NUMBER, MEMBER(maximum), .initial = 0, .minimum = 0, .maximum = DBL_MAX,
      .unit = "", .help = "end of the bins; 0: four times mean and deviation of an ideal gas"},
     FIELD_END,
