@@ -14,6 +14,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { STEPS = 1024, CIRCLE = 2 * STEPS };
 
@@ -117,6 +118,30 @@ static void test_slower_motion_is_told_where_its_exponent_is_known(void **state)
         assert_true(look_at(&made[k]).early > 0.95);
 }
 
+/// Of one window nothing tells the error, and the exponent decides alone.
+static void test_one_window_decides_alone(void **state) {
+    (void)state;
+    struct motion_summary s = {.growth = 0.8, .growth_error = NAN};
+    assert_true(mf_motion_is_early(&s));
+    s.growth = 0.9;
+    assert_false(mf_motion_is_early(&s));
+    s.growth = 1.4;
+    assert_true(mf_motion_is_early(&s));
+}
+
+/// By Rouse's chain, whose D is 7 % too large where the MSD is 5 R_g².
+static void test_beads_within_their_molecules_are_told_by_their_sizes(void **state) {
+    (void)state;
+    struct motion_summary s = {.growth = 1, .growth_error = 0.01, .sizes = 4.9};
+    char text[MOTION_EARLY_SIZE];
+    assert_true(mf_motion_is_within(&s) && mf_motion_is_early(&s));
+    assert_non_null(strstr(mf_motion_early_text(&s, text), "the MSD begins at 4.9 R_g^2"));
+    s.sizes = 5.1;
+    assert_false(mf_motion_is_early(&s));
+    s.sizes = 0; // no molecules
+    assert_false(mf_motion_is_early(&s));
+}
+
 static void test_the_line_has_the_exponent_with_its_error(void **state) {
     (void)state;
     char text[MOTION_EARLY_SIZE];
@@ -139,6 +164,8 @@ int main(void) {
         cmocka_unit_test(test_brownian_motion_is_told_to_diffuse),
         cmocka_unit_test(test_the_error_of_the_exponent_is_its_scatter),
         cmocka_unit_test(test_slower_motion_is_told_where_its_exponent_is_known),
+        cmocka_unit_test(test_one_window_decides_alone),
+        cmocka_unit_test(test_beads_within_their_molecules_are_told_by_their_sizes),
         cmocka_unit_test(test_the_line_has_the_exponent_with_its_error),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
