@@ -136,7 +136,7 @@ struct motion_summary mf_motion_result(const struct motion *motion,
 /// Whether beads still move within their molecules where the window of D begins, however their MSD
 /// grows: it is below 5 R_g². Of Rouse's chain D is then 7 % too large or more: their MSD is that
 /// of the centre and 2 R_g² (1 − Σ_p 6/(π p)² exp(−p² t/τ)), and comes to 5 R_g² at t = 2.6 τ.
-/// Tested: test_motion_molecules.
+/// Tested: test_motion_growth, cli/test_molecule_motion.
 bool mf_motion_is_within(const struct motion_summary *summary);
 
 /// Whether what moves does not diffuse yet over the window that D is of: it is within its

@@ -25,6 +25,6 @@ void mf_whole_molecules_make(struct whole_molecules *whole, const struct particl
                              int kind, int64_t m);
 
 /// The mean of R_g² over all beads of molecules, of equal masses [λ²]; NaN of particles that are
-/// not joined. Fails: NO_MEMORY. Tested: test_motion_molecules.
+/// not joined. Fails: NO_MEMORY. Tested: cli/test_molecule_motion.
 enum status mf_whole_molecules_gyration(const struct particles *particles,
                                         double *gyration) MUST_USE;
