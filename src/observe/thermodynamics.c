@@ -231,12 +231,16 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
                               "for longer",
                               s->temperature_configurational, wanted,
                               setup->integrator->samples ? "" : "lower \"time_step\", or ");
+    // A step that is too long parts the two.
+    const bool together = positions && agrees(s->temperature_configurational,
+                                              s->temperature_configurational_error, s->temperature);
     return mf_status_fail(STATUS_UNSTABLE,
                           "the temperature is %.3g" STATUS_TEMPERATURE
                           " by the velocities and %.3g" STATUS_TEMPERATURE " by the positions, not "
-                          "%.3g" STATUS_TEMPERATURE
-                          ": lower \"time_step\", or equilibrate for longer",
-                          s->temperature, s->temperature_configurational, wanted);
+                          "%.3g" STATUS_TEMPERATURE ": %s",
+                          s->temperature, s->temperature_configurational, wanted,
+                          together ? "equilibrate for longer, or with more friction"
+                                   : "lower \"time_step\", or equilibrate for longer");
 }
 
 /// Whether a temperature is off by more than little and by more than chance.
@@ -258,33 +262,32 @@ enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary 
                           s->temperature, setup->temperature);
 }
 
-/// Whether neither temperature is off by more than little. @param[in] remedy  after the numbers
-static enum status assess_closely(const struct thermodynamics_summary *s,
-                                  const struct simulation_setup *setup, const char *remedy) {
-    if (!mf_simulation_is_thermal(setup) || s->blocks < MIN_BLOCKS)
-        return STATUS_OK;
-    const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
-    const bool has_velocities = is_off(s->temperature, s->temperature_error, wanted);
-    const bool rests = shows_forces(setup) && is_off(s->temperature_configurational,
-                                                     s->temperature_configurational_error, wanted);
-    if (!has_velocities && !rests)
-        return STATUS_OK;
-    const double found = has_velocities ? s->temperature : s->temperature_configurational;
-    const double error =
-        has_velocities ? s->temperature_error : s->temperature_configurational_error;
+/// What is wrong with a step, as a temperature tells that is so many per cent off.
+static enum status fail_step(bool kinetic, double found, double error, double wanted,
+                             const char *remedy) {
     char off[NUMBER_TEXT_SIZE];
     mf_number_text(100 * (found / wanted - 1), 100 * error / wanted, off);
     return mf_status_fail(STATUS_UNSTABLE,
                           "the %s temperature is %s %% off: the time step is long for this "
                           "potential, or its force ends abruptly; %s",
-                          has_velocities ? "kinetic" : "configurational", off, remedy);
+                          kinetic ? "kinetic" : "configurational", off, remedy);
 }
 
 enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *s,
                                          const struct simulation_setup *setup) {
+    const char *const remedy = "test it by a shorter \"verification.time_step\"";
     TRY(mf_thermodynamics_assess(s, setup));
     TRY(mf_thermodynamics_assess_unheld(s, setup));
-    return assess_closely(s, setup, "test it by a shorter \"verification.time_step\"");
+    if (!mf_simulation_is_thermal(setup) || s->blocks < MIN_BLOCKS)
+        return STATUS_OK;
+    const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
+    if (is_off(s->temperature, s->temperature_error, wanted))
+        return fail_step(true, s->temperature, s->temperature_error, wanted, remedy);
+    if (shows_forces(setup) &&
+        is_off(s->temperature_configurational, s->temperature_configurational_error, wanted))
+        return fail_step(false, s->temperature_configurational,
+                         s->temperature_configurational_error, wanted, remedy);
+    return STATUS_OK;
 }
 
 /// Whether a flow that is driven may be in the velocities.
@@ -297,9 +300,23 @@ static bool flows(const struct simulation_setup *setup) {
 
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *s,
                                           const struct simulation_setup *setup) {
-    if (setup->integrator->samples || flows(setup)) // in no time, or hot by the flow
+    if (setup->integrator->samples || flows(setup) || !mf_simulation_is_thermal(setup) ||
+        s->blocks < MIN_BLOCKS) // in no time, or hot by the flow, or not known
         return STATUS_OK;
-    return assess_closely(s, setup, "lower \"time_step\"");
+    // A slow bath lets both wander together.
+    const bool moves = simulation_has_velocities(setup);
+    const double positions = s->temperature_configurational,
+                 of_positions = s->temperature_configurational_error;
+    const double wanted = moves ? s->temperature : setup->temperature;
+    const double error = moves ? hypot(of_positions, s->temperature_error) : of_positions;
+    if (!is_off(positions, error, wanted))
+        return STATUS_OK;
+    const double kinetic_off = moves ? fabs(s->temperature / setup->temperature - 1) : 0;
+    const bool kinetic = simulation_holds_temperature(setup) &&
+                         kinetic_off > fabs(positions / setup->temperature - 1);
+    return kinetic ? fail_step(true, s->temperature, s->temperature_error, setup->temperature,
+                               "lower \"time_step\"")
+                   : fail_step(false, positions, error, wanted, "lower \"time_step\"");
 }
 
 struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,

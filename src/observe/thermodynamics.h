@@ -94,8 +94,10 @@ enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary 
 enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *summary,
                                          const struct simulation_setup *setup) MUST_USE;
 
-/// The same of a simulation, for a warning: not of Monte Carlo, nor where a flow may be driven.
-/// Fails: UNSTABLE. Tested: test_thermodynamics.
+/// Whether positions and velocities tell one temperature, within 2.5 % and three standard errors:
+/// a time step that is long parts them, a bath that is slow does not; for a warning of a
+/// simulation. Without velocities the temperature of the setup stands for theirs. Not of Monte
+/// Carlo, nor where a flow may be driven. Fails: UNSTABLE. Tested: test_thermodynamics.
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *summary,
                                           const struct simulation_setup *setup) MUST_USE;
 
