@@ -158,13 +158,30 @@ static bool read_position(const struct lammps_dump *dump, const struct word *wor
     return true;
 }
 
+/// Without ids rows are atoms in the order of the first frame, which LAMMPS changes as it sorts
+/// them: where types tell, it is told.
+static enum status check_order(const struct trajectory *trajectory,
+                               const struct trajectory_frame *frame, const struct lammps_dump *dump,
+                               const struct word *word, const char *line, size_t row) {
+    const int64_t first = trajectory->structure.atom[row].type;
+    int64_t type = first;
+    if (!trajectory->structure.has_types ||
+        (integer_at(dump, word, LAMMPS_TYPE, &type) && type == first))
+        return STATUS_OK;
+    return mf_frame_fail_line(
+        frame, line,
+        "an atom of another type than in this row of the first frame: without "
+        "ids atoms come in any order; dump the column id, too, or use "
+        "\"dump_modify sort id\"");
+}
+
 /// Where the atom stands among the structure's, each once.
 static enum status find_atom(const struct trajectory *trajectory, struct trajectory_frame *frame,
                              const struct lammps_dump *dump, const struct word *word,
                              const char *line, size_t *atom) {
     int64_t id;
     if (!trajectory->structure.has_ids)
-        return STATUS_OK;
+        return check_order(trajectory, frame, dump, word, line, *atom);
     if (dump->column[LAMMPS_ID] < 0 || !mf_words_integer(&word[dump->column[LAMMPS_ID]], &id))
         return mf_frame_fail_line(frame, line, "expected an atom id");
     return mf_trajectory_find_atom(trajectory, frame, line, id, atom);

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/// Units that were told are wrong more often than matter is so thin or dense; bins of 0.01 nm may
+/// Units are wrong more often than matter is so thin or dense; bins of 0.01 nm may
 /// then be more than memory holds.
 static void doubt_density(struct progress *progress, const struct trajectory_frame *frame,
                           size_t beads, const char *units) {
@@ -16,7 +16,14 @@ static void doubt_density(struct progress *progress, const struct trajectory_fra
         volume += a[0][d] *
                   (a[1][(d + 1) % 3] * a[2][(d + 2) % 3] - a[1][(d + 2) % 3] * a[2][(d + 1) % 3]);
     const double density = (double)beads / fabs(volume);
-    if (units && frame->has_box && (density < thinnest || density > densest))
+    if (!frame->has_box || (density >= thinnest && density <= densest))
+        return;
+    if (units == NULL)
+        mf_progress_print(progress,
+                          "mesofit: warning: %s: %.3g beads in a nm^3: are places and box in "
+                          "another unit?",
+                          frame->file, density);
+    else
         mf_progress_print(
             progress,
             "mesofit: warning: --file-units %s make %.3g beads in a nm^3: is the file "

@@ -39,8 +39,8 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
             "mesofit: warning: from frame to frame %.2g %% of the steps along the "
             "box come near half of it, and the file does not tell which image beads "
             "are in: MSD, D, escape times and VACF of differences are wrong; take "
-            "frames closer together, or write images (xu yu zu or ix iy iz in LAMMPS, "
-            "particles/image in GSD and H5MD)",
+            "frames closer together, write images (xu yu zu or ix iy iz in LAMMPS, "
+            "particles/image in GSD and H5MD), or keep the order of atoms (id in LAMMPS)",
             100 * (double)path->far / (double)path->steps);
     if (motion->path.differences)
         mf_progress_print(progress,
@@ -302,18 +302,24 @@ static void print_heating(struct progress *progress, const struct measure_result
             drift.before, drift.before_error, 100 * drift.part, drift.after, drift.after_error);
 }
 
-/// Units that were told are wrong more often than matter is so hot or cold.
+/// Units are wrong more often than matter is so hot or cold.
 static void print_speeds(struct progress *progress, const struct measure_result *result) {
-    static const double hottest = 1e4, coldest = 1;
+    static const double hottest = 5000, coldest = 10;
     const char *const units = result->request->frames.options.units;
     const struct sample_series *const kinetic = &result->measured->motion.temperature;
     const double kelvin = mf_measured_mean(kinetic, NULL);
-    if (units && kinetic->count > 0 && (kelvin < coldest || kelvin > hottest))
-        mf_progress_print(
-            progress,
-            "mesofit: warning: --file-units %s make velocities of %.3g K: is the file "
-            "in other units?",
-            units, kelvin);
+    if (kinetic->count == 0 || (kelvin >= coldest && kelvin <= hottest))
+        return;
+    if (units)
+        mf_progress_print(progress,
+                          "mesofit: warning: --file-units %s make velocities of %.3g K: is the "
+                          "file in other units?",
+                          units, kelvin);
+    else
+        mf_progress_print(progress,
+                          "mesofit: warning: velocities and masses make %.4g K: are they, or "
+                          "places, in other units?",
+                          kelvin);
 }
 
 /// What a person is to know.

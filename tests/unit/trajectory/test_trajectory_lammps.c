@@ -383,6 +383,13 @@ static void test_dump_is_refused_with_its_line(void **state) {
     assert_refused(state, text, "two atoms have the id 2");
     snprintf(text, sizeof text, "%sITEM: TIMESTEP\n8\nITEM: NUMBER OF ATOMS\n3\n", dump);
     assert_refused(state, text, "a.txt:15: frame 1: it has 3 atoms, the first frame 2");
+    // Without ids a change of order shows by the types.
+    static const char frames[] = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\n"
+                                 "ITEM: BOX BOUNDS pp pp pp\n0 9\n0 9\n0 9\n"
+                                 "ITEM: ATOMS type x y z\n1 1 2 3\n2 4 5 6\n";
+    snprintf(text, sizeof text, "%s%.*s2 1 2 3\n1 4 5 6\n", frames, (int)sizeof frames - 17,
+             frames);
+    assert_refused(state, text, "a.txt:21: frame 1: an atom of another type than in this row of");
     assert_refused(state, "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id x y\n1 2 3\n", "no positions");
     assert_refused(state, "ITEM: ATOMS id x y z\n1 2 3 4\n",
                    "a.txt:1: frame 0: expected the number of atoms");
