@@ -292,16 +292,31 @@ done:
     return status;
 }
 
-/// The type of an atom: that of its name or, of types that are called by numbers, of its number;
-/// else the type that is of this number in their order; `count` if it has none.
-static size_t type_of(const struct structure_atom *atom, const char *const *types, size_t count,
-                      bool *by_number) {
-    char name[STRUCTURE_NAME], number[32];
+/// The type that is called as an atom; `count` if none is.
+static size_t type_of_name(const struct structure_atom *atom, const char *const *types,
+                           size_t count) {
+    char name[STRUCTURE_NAME];
+    size_t type = 0;
     mf_names_adapt(atom->name, "_", name, sizeof name);
+    while (type < count && strcmp(types[type], atom->name) != 0 && strcmp(types[type], name) != 0)
+        type++;
+    return type;
+}
+
+/// Whether a type is called as any atom is: names then tell all types, and numbers none.
+static bool names_tell(const struct structure *structure, const char *const *types, size_t count) {
+    bool tell = false;
+    for (size_t k = 0; k < structure->atoms && !tell; k++)
+        tell = type_of_name(&structure->atom[k], types, count) < count;
+    return tell;
+}
+
+/// The type of an atom of another name: of types that are called by numbers, that of its number;
+/// else the type that is of this number in their order; `count` if it has none.
+static size_t type_of_number(const struct structure_atom *atom, const char *const *types,
+                             size_t count, bool *by_number) {
+    char number[32];
     snprintf(number, sizeof number, "%lld", (long long)atom->type);
-    for (size_t type = 0; type < count; type++)
-        if (strcmp(types[type], atom->name) == 0 || strcmp(types[type], name) == 0)
-            return type;
     for (size_t type = 0; type < count; type++)
         if (strcmp(types[type], number) == 0)
             return type;
@@ -312,16 +327,19 @@ static size_t type_of(const struct structure_atom *atom, const char *const *type
 static enum status take_atoms(struct mapping *mapping, const struct structure *structure,
                               const char *const *types, const double *mass, const char *file) {
     OWNED bool *told = NULL;
+    const bool named = names_tell(structure, types, mapping->types);
     TRY_ARRAY(told, mapping->types + 1);
     for (size_t k = 0; k < structure->atoms; k++) {
         const struct structure_atom *const atom = &structure->atom[k];
         bool by_number = false;
-        const size_t type = type_of(atom, types, mapping->types, &by_number);
+        const size_t type = named ? type_of_name(atom, types, mapping->types)
+                                  : type_of_number(atom, types, mapping->types, &by_number);
         if (type == mapping->types)
             return mf_status_fail(
                 STATUS_BAD_INPUT,
-                "%s: no type has the name of atom %zu, \"%s\"; map atoms to beads by --map%s", file,
-                k + 1, atom->name, atom->name[0] ? "" : ", or name atoms by a structure, -s FILE");
+                "%s: no type has the name of atom %zu, \"%s\"; %smap atoms to beads by --map%s",
+                file, k + 1, atom->name, named ? "add it to \"particles.types\", or " : "",
+                atom->name[0] ? "" : ", or name atoms by a structure, -s FILE");
         if (by_number && !told[type] && structure->names != STRUCTURE_TYPES) {
             told[type] = true;
             TRY(note(mapping,

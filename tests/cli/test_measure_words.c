@@ -154,6 +154,22 @@ static void test_types_by_their_numbers(void **state) {
     assert_contains(result.err, "\"Ar\" of type number 2 are beads \"Y\"");
 }
 
+/// Where one type is called as atoms are, names tell all: krypton is no third argon by its number.
+static void test_types_by_their_names(void **state) {
+    static const char frame[] = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n3\nITEM: BOX BOUNDS pp "
+                                "pp pp\n0 20\n0 20\n0 20\nITEM: ATOMS id type element x y z\n1 1 "
+                                "Kr 1 2 3\n2 2 Ar 9 2 3\n3 2 Ar 5 9 17\n";
+    static const char types[] = "{\"particles\": {\"types\": {\"Ar\": 2}},\n"
+                                "\"molecules\": {\"one\": {\"count\": 1, \"beads\": [\"Ar\"]}}}\n";
+    small_inputs_write(*state, "a.dump", frame, NULL, NULL);
+    small_inputs_write(*state, "scene.json", types, NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "a.dump", "--file-units", "real", "--static", "--molecules",
+                "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "no type has the name of atom 1, \"Kr\"; add it to "
+                                "\"particles.types\", or map atoms to beads by --map");
+}
+
 /// A line that a shell takes as it is.
 static void test_names_with_blanks_are_quoted(void **state) {
     temporary_folder_write(*state, "it's mine.tpr", "\0\0\0\15\0\0\0\14VERSION 2020", 20);
@@ -183,6 +199,7 @@ int main(void) {
                                        TEST(test_velocities_without_times),
                                        TEST(test_a_temperature_that_nothing_tells),
                                        TEST(test_types_by_their_numbers),
+                                       TEST(test_types_by_their_names),
                                        TEST(test_names_with_blanks_are_quoted),
                                        TEST(test_the_next_command_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
