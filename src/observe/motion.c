@@ -310,10 +310,9 @@ static double lag_time(const struct motion *motion, size_t lag) {
     return (double)lag * (double)motion->plan.every * motion->time_step;
 }
 
-/// Slope of the line a + b t of least squares, over 2d.
-static double read_slope(const struct motion *motion, const double *curve, size_t unused) {
-    (void)unused;
-    const size_t first = fit_first(&motion->plan), last = (size_t)motion->plan.lags;
+/// Slope of the line a + b t of least squares between two lags, over 2d.
+static double find_slope(const struct motion *motion, const double *curve, size_t first,
+                         size_t last) {
     const double middle = 0.5 * (lag_time(motion, first) + lag_time(motion, last));
     double above = 0, below = 0;
     for (size_t lag = first; lag <= last; lag++) {
@@ -322,6 +321,21 @@ static double read_slope(const struct motion *motion, const double *curve, size_
         below += t * t;
     }
     return above / below / (2 * motion->dimensions);
+}
+
+static double read_slope(const struct motion *motion, const double *curve, size_t unused) {
+    (void)unused;
+    return find_slope(motion, curve, fit_first(&motion->plan), (size_t)motion->plan.lags);
+}
+
+/// What the slope changes by from the first half of the line to the second, over as many lags.
+static double read_bend(const struct motion *motion, const double *curve, size_t unused) {
+    (void)unused;
+    const size_t first = fit_first(&motion->plan), last = (size_t)motion->plan.lags;
+    const size_t half = (last - first) / 2;
+    return half == 0 ? NAN
+                     : find_slope(motion, curve, last - half, last) -
+                           find_slope(motion, curve, first, first + half);
 }
 
 /// Trapezoids over the whole window, over d.
@@ -402,6 +416,9 @@ static void find_growth(const struct motion *motion, struct motion_summary *s) {
         deviations[b] = (sums[last] / end - sums[first] / begin) / (double)motion->each / way;
     }
     s->growth = log(end / begin) / way;
+    average(motion, motion->squares, read_bend, 0, &s->bend, &s->bend_error);
+    s->bend /= s->msd;
+    s->bend_error /= fabs(s->msd);
     s->sizes = motion->gyration > 0 ? begin / motion->gyration : 0;
     s->growth_error = mf_statistics_correlated_error(deviations, blocks, 1);
 }

@@ -111,6 +111,7 @@ struct motion_summary {
     double blocks;                ///< of time, complete: what errors rest on
     double fit_begin, fit_end;    ///< the window of the least squares               [τ]
     double growth, growth_error; ///< exponent of the MSD over that window: 1 of what diffuses
+    double bend, bend_error;     ///< what its slope changes by along that window, over the slope
     double sizes; ///< MSD at its begin over R_g² of the molecules; 0 without molecules
     struct maxwell_summary maxwell; ///< NaN without friction: no thermostat
 };
@@ -140,10 +141,12 @@ struct motion_summary mf_motion_result(const struct motion *motion,
 bool mf_motion_is_within(const struct motion_summary *summary);
 
 /// Whether what moves does not diffuse yet over the window that D is of: it is within its
-/// molecules, or flies, with an exponent near 2, or is held, below 1. The exponent must be below
-/// 0.85 or above 1.3, and 3 of its errors from 1; where these are not known, of one window, it
-/// decides alone. Of Brownian paths none of several 100 is told, with 2 to 128 beads and 20 to 80
-/// windows. Tested: test_motion, test_motion_growth.
+/// molecules, or flies, with an exponent near 2, or is held, below 1, or comes from one to the
+/// other, so that the slope still changes. The exponent must be below 0.85 or above 1.3, and 3 of
+/// its errors from 1; where these are not known, of one window, it decides alone; but not where the
+/// slope is known not to change as that of such a power. The slope must change by a twentieth and 3
+/// errors. Of Brownian paths none of several 100 is told, with 2 to 128 beads and 20 to 80 windows.
+/// Tested: test_motion, test_motion_growth.
 bool mf_motion_is_early(const struct motion_summary *summary);
 
 /// "no D yet: the MSD still grows as t^0.803(21)", or "". Returns `text`.

@@ -11,14 +11,27 @@ bool mf_motion_is_within(const struct motion_summary *s) {
     return s->sizes > 0 && s->sizes < enough;
 }
 
+/// Whether the MSD is a line that does not go through 0, as in a dense liquid, and no power of t,
+/// whose slope would change along the window, from five to seven eighths of it.
+static bool is_straight(const struct motion_summary *s) {
+    static const double errors = 2, part = 0.5;
+    const double of_power = pow(7.0 / 5, s->growth - 1) - 1;
+    return s->bend_error > 0 && fabs(s->bend) + errors * s->bend_error < part * fabs(of_power);
+}
+
 static bool grows_otherwise(const struct motion_summary *s) {
     static const double least = 0.85, most = 1.3, errors = 3;
     const bool is_far = s->growth < least || s->growth > most;
-    return is_far && !(fabs(s->growth - 1) < errors * s->growth_error);
+    return is_far && !(fabs(s->growth - 1) < errors * s->growth_error) && !is_straight(s);
+}
+
+static bool bends(const struct motion_summary *s) {
+    static const double little = 0.05, errors = 3;
+    return fabs(s->bend) > fmax(little, errors * s->bend_error) && s->bend_error > 0;
 }
 
 bool mf_motion_is_early(const struct motion_summary *s) {
-    return mf_motion_is_within(s) || grows_otherwise(s);
+    return mf_motion_is_within(s) || grows_otherwise(s) || bends(s);
 }
 
 /// "0.803(21)": the exponent, with its error where that is above a hundredth.
@@ -40,6 +53,10 @@ const char *mf_motion_early_text(const struct motion_summary *s, char text[MOTIO
         snprintf(text, MOTION_EARLY_SIZE,
                  "no D yet: beads still move within their molecules, the MSD begins at %.2g R_g^2",
                  s->sizes);
+    else if (bends(s))
+        snprintf(text, MOTION_EARLY_SIZE,
+                 "no D yet: the slope of the MSD still changes by %.0f %% along the window",
+                 100 * s->bend);
     return text;
 }
 

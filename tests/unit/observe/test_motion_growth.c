@@ -119,13 +119,18 @@ static void test_slower_motion_is_told_where_its_exponent_is_known(void **state)
 }
 
 /// Of one window nothing tells the error, and the exponent decides alone.
-static void test_one_window_decides_alone(void **state) {
+static void test_exponents_are_of_powers_and_not_of_lines(void **state) {
     (void)state;
     struct motion_summary s = {.growth = 0.8, .growth_error = NAN};
     assert_true(mf_motion_is_early(&s));
     s.growth = 0.9;
     assert_false(mf_motion_is_early(&s));
     s.growth = 1.4;
+    assert_true(mf_motion_is_early(&s));
+    // A line above 0, as of caged beads that have left: t^0.8 would bend by -6.5 %.
+    s = (struct motion_summary){.growth = 0.8, .growth_error = 0.01, .bend_error = 0.012};
+    assert_false(mf_motion_is_early(&s));
+    s.bend_error = 0.02;
     assert_true(mf_motion_is_early(&s));
 }
 
@@ -137,6 +142,14 @@ static void test_beads_within_their_molecules_are_told_by_their_sizes(void **sta
     assert_true(mf_motion_is_within(&s) && mf_motion_is_early(&s));
     assert_non_null(strstr(mf_motion_early_text(&s, text), "the MSD begins at 4.9 R_g^2"));
     s.sizes = 5.1;
+    assert_false(mf_motion_is_early(&s));
+    s.bend = -0.2, s.bend_error = 0.06;
+    assert_true(mf_motion_is_early(&s));
+    assert_string_equal(mf_motion_early_text(&s, text),
+                        "no D yet: the slope of the MSD still changes by -20 % along the window");
+    s.bend_error = 0.07;
+    assert_false(mf_motion_is_early(&s));
+    s.bend = 0.04, s.bend_error = 0.001;
     assert_false(mf_motion_is_early(&s));
     s.sizes = 0; // no molecules
     assert_false(mf_motion_is_early(&s));
@@ -164,7 +177,7 @@ int main(void) {
         cmocka_unit_test(test_brownian_motion_is_told_to_diffuse),
         cmocka_unit_test(test_the_error_of_the_exponent_is_its_scatter),
         cmocka_unit_test(test_slower_motion_is_told_where_its_exponent_is_known),
-        cmocka_unit_test(test_one_window_decides_alone),
+        cmocka_unit_test(test_exponents_are_of_powers_and_not_of_lines),
         cmocka_unit_test(test_beads_within_their_molecules_are_told_by_their_sizes),
         cmocka_unit_test(test_the_line_has_the_exponent_with_its_error),
     };
