@@ -58,7 +58,10 @@ double mf_export_checks_compressibility(const struct export_job *job) {
 
 double mf_export_checks_usual_pressure(const struct export_job *job) {
     const struct export_model *model = job->model;
-    if (job->units.system == EXPORT_REDUCED && !model->partial && model->pressure.value > 0)
+    // Where nothing tells what density another pressure has, none but its own is a check.
+    const bool own =
+        job->units.system == EXPORT_REDUCED || !(mf_export_checks_compressibility(job) > 0);
+    if (own && !model->partial && model->pressure.value > 0)
         return job->units.pressure * model->pressure.value;
     return job->engine->system == EXPORT_DL_POLY ? 1e-3 : 1;
 }

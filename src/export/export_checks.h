@@ -15,8 +15,8 @@ void mf_export_checks_rdf(const struct export_job *job, const char *files, FILE 
 /// @param[in] commands  lines that run the folder at 1 atm, or at 1 in the engine's unit
 void mf_export_checks_pressure(const struct export_job *job, const char *commands, FILE *stream);
 
-/// The pressure of these commands in the engine's unit: 1 atm, 1 bar or, in reduced units, that of
-/// the result, 1 if it is not known.
+/// The pressure of these commands in the engine's unit: 1 atm or 1 bar; in reduced units, and where
+/// the compressibility is not known, that of the result, if it is known and above 0.
 double mf_export_checks_usual_pressure(const struct export_job *job);
 
 /// κ_T in the engine's unit, of the result's g(r) or S(q); NAN: it is not known.

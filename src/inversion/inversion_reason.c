@@ -160,23 +160,6 @@ static void report_gradient(const struct inversion *inversion, char reason[INVER
         report_what_is_missing(inversion, reason);
 }
 
-/// Of a g(r) that is off, where it is by most, if the last samples are those of the best potential.
-static void report_misfit(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
-    const struct inversion_progress *p = &inversion->course.progress;
-    const struct target_distance *rdf = &p->best.distance[TARGET_RDF];
-    struct inversion_stretch off;
-    char place[STRETCH_SIZE] = "";
-    const bool known = !p->from_disorder && mf_inversion_find_stretch(inversion, &off);
-    if (known)
-        describe_stretch(inversion, &off, place);
-    snprintf(reason, INVERSE_REASON_SIZE,
-             "after %lld iterations the error of g(r) is %.2g (%.2g at first), its statistical "
-             "error %.2g, and chi^2 per bin is %.2g (at most %.2g by noise)%s%s: try more "
-             "\"iterations\"",
-             (long long)inversion->parameters.iterations, rdf->rms, p->first_error, rdf->noise,
-             p->best.worst.misfit, p->best.worst.probable, known ? ", most" : "", place);
-}
-
 static double square_of(const struct inversion_history *history, uint64_t iteration) {
     const double *excess = history->excess + iteration * history->bins;
     double sum = 0;
@@ -190,6 +173,25 @@ static bool has_stopped(const struct inversion_history *history) {
     static const double much = 0.5;
     return history->iterations < 2 || square_of(history, history->iterations - 1) >
                                           much * square_of(history, (history->iterations - 1) / 2);
+}
+
+/// Of a g(r) that is off, where it is by most, if the last samples are those of the best potential.
+static void report_misfit(const struct inversion *inversion, char reason[INVERSE_REASON_SIZE]) {
+    const struct inversion_progress *p = &inversion->course.progress;
+    const struct target_distance *rdf = &p->best.distance[TARGET_RDF];
+    struct inversion_stretch off;
+    char place[STRETCH_SIZE] = "";
+    const bool known = !p->from_disorder && mf_inversion_find_stretch(inversion, &off);
+    if (known)
+        describe_stretch(inversion, &off, place);
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "after %lld iterations the error of g(r) is %.2g (%.2g at first), its statistical "
+             "error %.2g, and chi^2 per bin is %.2g (at most %.2g by noise)%s%s%s",
+             (long long)inversion->parameters.iterations, rdf->rms, p->first_error, rdf->noise,
+             p->best.worst.misfit, p->best.worst.probable, known ? ", most" : "", place,
+             inversion->history.iterations > 3 && has_stopped(&inversion->history)
+                 ? "; it no longer falls: are density, temperature and types those of the target?"
+                 : ": try more \"iterations\"");
 }
 
 /// Write the first reason that applies.

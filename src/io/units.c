@@ -176,7 +176,8 @@ static void complete(struct system *system, struct json_object *scene) {
         if (scene->item)
             mf_json_fault(
                 scene, "temperature",
-                is_number
+                is_number && system->temperature < 0 ? "below 0 K: temperatures are in kelvins"
+                : is_number
                     ? "0 K gives no unit of energy; \"temperature\" of \"units\" gives another"
                 : scene->path[0]
                     ? "missing: expected a number (K), as fit --target DIR takes it by "

@@ -254,7 +254,7 @@ static const char *without_temperature(const struct measure_result *result) {
     if (!motion->has_velocities)
         return "there are no velocities";
     if (result->mapping->broken)
-        return "velocities of parts of molecules do not tell it, as bonds of fixed length hold "
+        return "velocities of parts of molecules do not tell it where bonds of fixed length hold "
                "them";
     return motion->mass == NULL ? "masses are not known" : "one bead does not tell it";
 }
