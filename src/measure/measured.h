@@ -87,6 +87,10 @@ void mf_measured_end(struct measured *measured);
 enum status mf_measured_moments(const struct measured *measured, int order, int group,
                                 struct bonded_moments *moments) MUST_USE;
 
+/// The means of its two parts, if a deep valley is between; else NaN. Fails: NO_MEMORY.
+enum status mf_measured_parts(const struct measured *measured, int order, int group,
+                              double part[2]) MUST_USE;
+
 /// The state of an observable that is measured, NULL of one that is not, and g(r), if there is one.
 const void *mf_measured_state(const struct measured *measured, const struct observable *observable);
 const struct rdf *mf_measured_rdf(const struct measured *measured);

@@ -17,6 +17,17 @@ enum status mf_measured_moments(const struct measured *measured, int order, int 
     return STATUS_OK;
 }
 
+enum status mf_measured_parts(const struct measured *measured, int order, int group,
+                              double part[2]) {
+    const void *const state = mf_measured_state(measured, mf_bonded_distribution_of(order));
+    struct bonded_bins bins;
+    OWNED double *counts = mf_bonded_distribution_counts(state, group, &bins);
+    if (counts == NULL)
+        return STATUS_NO_MEMORY;
+    mf_bonded_distribution_parts(&bins, counts, part);
+    return STATUS_OK;
+}
+
 const void *mf_measured_state(const struct measured *measured,
                               const struct observable *observable) {
     const struct observable_use *use = measured->use;

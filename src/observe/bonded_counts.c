@@ -9,6 +9,41 @@
 
 const double mf_bonded_distribution_seen = 1e-3;
 
+/// The bin with the least p beside the lower of the peaks on either side, below which a twentieth
+/// of all lies at least, and above it as much; `bins->count` if none has a twentieth of the lower
+/// peak.
+static size_t find_valley(const struct bonded_bins *bins, const double *p, double all) {
+    static const double deepest = 0.05, least = 0.05;
+    size_t valley = bins->count;
+    double left = 0, below = 0, depth = deepest;
+    for (size_t k = 0; k < bins->count; k++) {
+        double right = 0;
+        for (size_t n = k + 1; n < bins->count; n++)
+            right = fmax(right, p[n]);
+        const double lower = fmin(left, right);
+        if (below >= least * all && below <= (1 - least) * all && p[k] < depth * lower) {
+            depth = p[k] / lower;
+            valley = k;
+        }
+        left = fmax(left, p[k]);
+        below += p[k];
+    }
+    return valley;
+}
+
+void mf_bonded_distribution_parts(const struct bonded_bins *bins, const double *p, double part[2]) {
+    double all = 0, sum[2] = {0}, moment[2] = {0};
+    for (size_t k = 0; k < bins->count; k++)
+        all += p[k];
+    const size_t valley = find_valley(bins, p, all);
+    for (size_t k = 0; k < bins->count; k++) {
+        sum[k > valley] += p[k];
+        moment[k > valley] += p[k] * bonded_bins_centre(bins, k);
+    }
+    for (int side = 0; side < 2; side++)
+        part[side] = valley < bins->count ? moment[side] / sum[side] : NAN;
+}
+
 struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,
                                                      const double *p) {
     struct bonded_moments moments = {0};

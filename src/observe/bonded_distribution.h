@@ -62,6 +62,10 @@ extern const double mf_bonded_distribution_seen;
 struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,
                                                      const double *p);
 
+/// The means of two parts of a distribution with a deep valley between: less than a twentieth of
+/// the lower peak; NaN: it is one. Tested: cli/test_measure_molecules.
+void mf_bonded_distribution_parts(const struct bonded_bins *bins, const double *p, double part[2]);
+
 /// The deviation below which a group is as good as constrained, by `narrow` of its kind: a
 /// hundredth of a bond's mean length, a degree of an angle, none of a dihedral. An oscillation as
 /// narrow asks for time steps of a thousandth of the length at the thermal velocity, a twentieth of

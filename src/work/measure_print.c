@@ -164,28 +164,36 @@ static void print_molecules(struct progress *progress, const struct measure_resu
 }
 
 /// Bonds that are twice as long as beads are apart join beads that are none: in another order than
-/// that of the trajectory any two beads are half a box apart.
-static enum status print_far_bonds(struct progress *progress, const struct measure_result *result) {
+/// that of the trajectory any two beads are half a box apart. So do those of two lengths, with
+/// hardly any between.
+static enum status print_doubtful_bonds(struct progress *progress,
+                                        const struct measure_result *result) {
     static const double farthest = 2;
+    static const char question[] = "are the beads of --molecules in the order of the trajectory?";
     const struct measured *const measured = result->measured;
     const struct molecules *const molecules = measured->molecules.molecules;
     if (molecules == NULL || measured->in_vacuum)
         return STATUS_OK;
-    double unused;
     const double apart =
-        cbrt(mf_measured_mean(&measured->volume, &unused) / (double)result->mapping->beads);
+        cbrt(mf_measured_mean(&measured->volume, NULL) / (double)result->mapping->beads);
     for (int g = 0; g < molecules->groups[BONDED_BOND]; g++) {
         struct bonded_moments found;
         char unit[UNITS_NAME_SIZE];
+        double part[2];
         TRY(mf_measured_moments(measured, BONDED_BOND, g, &found));
-        if (!(found.mean > farthest * apart))
-            continue;
+        TRY(mf_measured_parts(measured, BONDED_BOND, g, part));
+        const char *const name = molecules->group[BONDED_BOND][g].name;
         const double factor = find_unit(result, "lambda", unit);
-        mf_progress_print(progress,
-                          "mesofit: warning: bonds \"%s\" are %.3g %s long, and beads %.3g %s "
-                          "apart: are the beads of --molecules in the order of the trajectory?",
-                          molecules->group[BONDED_BOND][g].name, factor * found.mean, unit,
-                          factor * apart, unit);
+        if (found.mean > farthest * apart)
+            mf_progress_print(progress,
+                              "mesofit: warning: bonds \"%s\" are %.3g %s long, and beads %.3g %s "
+                              "apart: %s",
+                              name, factor * found.mean, unit, factor * apart, unit, question);
+        else if (isfinite(part[0]))
+            mf_progress_print(progress,
+                              "mesofit: warning: bonds \"%s\" are either some %.3g or some %.3g %s "
+                              "long, and hardly any between: %s",
+                              name, factor * part[0], factor * part[1], unit, question);
     }
     return STATUS_OK;
 }
@@ -352,7 +360,7 @@ static void print_all(struct progress *progress, const struct measure_result *re
 
 enum status mf_measure_print(struct progress *progress, const struct measure_result *result) {
     print_all(progress, result);
-    TRY(print_far_bonds(progress, result));
+    TRY(print_doubtful_bonds(progress, result));
     return print_constraints(progress, result);
 }
 

@@ -380,6 +380,36 @@ static void test_bonds_of_beads_in_another_order_are_told(void **state) {
     }
 }
 
+/// Trimers whose middle is named as an end: bonds of 0.3 and of 0.6 nm are one group.
+static void test_bonds_of_two_lengths_are_told(void **state) {
+    static const char *const bonds[] = {"[[1, 2], [2, 3]]", "[[1, 2], [1, 3]]"};
+    static struct run_program_result result;
+    FILE *stream = fopen("trimers.gro", "w");
+    assert_non_null(stream);
+    srand(5);
+    fprintf(stream, "trimers\n600\n");
+    for (int k = 0; k < 200; k++) {
+        const double at[3] = {0.1 + 3 * uniform(), 0.1 + 3 * uniform(), 0.1 + 3 * uniform()};
+        double x = at[0];
+        for (int bead = 0; bead < 3; bead++, x += 0.28 + 0.04 * uniform())
+            fprintf(stream, "%5dTRI      A%5d%8.3f%8.3f%8.3f\n", k + 1, 3 * k + bead + 1, x, at[1],
+                    at[2]);
+    }
+    fprintf(stream, "   4.0 4.0 4.0\n");
+    fclose(stream);
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "trimers.json",
+                           "{\"molecules\": {\"three\": {\"beads\": [\"A\", \"A\", \"A\"],\n"
+                           "\"bonds\": {\"AA\": BONDS}}}}\n",
+                           "BONDS", bonds[k]);
+        RUN_PROGRAM(&result, "measure", "trimers.gro", "--molecules", "trimers.json", "-o",
+                    "target");
+        run_program_assert_code(&result, 0);
+        const char *const told = strstr(result.err, "nm long, and hardly any between: are");
+        assert_true((told != NULL) == (k == 1));
+    }
+}
+
 static void test_molecules_that_are_not_there_are_refused(void **state) {
     static const struct {
         const char *from, *to, *words[3];
@@ -459,6 +489,7 @@ int main(void) {
         TEST(test_lengths_have_bins_for_the_narrowest_bond),
         TEST(test_beads_in_another_order_than_their_atoms_are_told),
         TEST(test_bonds_of_beads_in_another_order_are_told),
+        TEST(test_bonds_of_two_lengths_are_told),
         TEST(test_molecules_that_are_not_there_are_refused),
         TEST(test_masses_are_those_of_the_scene),
     };
