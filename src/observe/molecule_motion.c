@@ -10,6 +10,8 @@
 #include "observe/measure.h"
 #include "observe/motion.h"
 
+_Static_assert(TOPOLOGY_MAX_KINDS *MOTION_SPANS <= OBSERVABLE_MAX_SPANS, "OBSERVABLE_MAX_SPANS");
+
 struct state {
     const struct molecules *molecules;
     size_t max;                               ///< molecules of a kind

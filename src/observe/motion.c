@@ -7,7 +7,6 @@
 #include "base/statistics.h"
 #include "observe/sample_blocks.h"
 #include "system/orientation.h"
-#include "system/whole_molecules.h"
 
 #include <math.h>
 #include <string.h>
@@ -107,6 +106,7 @@ void mf_motion_clear(struct motion *motion) {
     mf_memory_free(motion->squares);
     mf_memory_free(motion->products);
     mf_maxwell_clear(&motion->maxwell);
+    mf_whole_molecules_clear(&motion->whole);
     *motion = (struct motion){0};
 }
 
@@ -271,7 +271,12 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
 enum status mf_motion_see_molecules(struct motion *motion, const struct particles *particles) {
     if (particles->topology == NULL || motion->samples % (size_t)motion->plan.lags != 0)
         return STATUS_OK;
-    return mf_whole_molecules_gyration(particles, &motion->gyration);
+    if (motion->whole.topology == NULL)
+        TRY(mf_whole_molecules_init(&motion->whole, particles->topology));
+    motion->gyration[0] +=
+        mf_whole_molecules_gyration(&motion->whole, particles) / (double)motion->count;
+    motion->gyration[1]++;
+    return STATUS_OK;
 }
 
 void mf_motion_add(struct motion *motion, const double *state, int threads) {
@@ -288,7 +293,7 @@ size_t mf_motion_spans(struct motion *motion, struct memory_span *spans) {
     spans[n++] = (struct memory_span){motion->origins, motion->slots * state};
     spans[n++] = (struct memory_span){motion->squares, curves};
     spans[n++] = (struct memory_span){motion->products, curves};
-    spans[n++] = (struct memory_span){&motion->gyration, sizeof motion->gyration};
+    spans[n++] = (struct memory_span){motion->gyration, sizeof motion->gyration};
     return n + mf_maxwell_spans(&motion->maxwell, spans + n);
 }
 
@@ -419,7 +424,7 @@ static void find_growth(const struct motion *motion, struct motion_summary *s) {
     average(motion, motion->squares, read_bend, 0, &s->bend, &s->bend_error);
     s->bend /= s->msd;
     s->bend_error /= fabs(s->msd);
-    s->sizes = motion->gyration > 0 ? begin / motion->gyration : 0;
+    s->sizes = motion->gyration[0] > 0 ? begin * motion->gyration[1] / motion->gyration[0] : 0;
     s->growth_error = mf_statistics_correlated_error(deviations, blocks, 1);
 }
 

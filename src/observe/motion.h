@@ -21,6 +21,7 @@
 #include "base/number_text.h"
 #include "dynamics/simulation.h"
 #include "observe/maxwell.h"
+#include "system/whole_molecules.h"
 
 struct motion_plan {
     int64_t every;        ///< steps between samples
@@ -49,8 +50,9 @@ struct motion {
     double *origins;  ///< shape [slots, 2, dimensions, count]
     double *squares;  ///< shape [blocks, lags + 1]: Σ over origins of the mean |Δr|²  [λ²]
     double *products; ///< shape [blocks, lags + 1]: the same of v · v                 [λ²/τ²]
-    struct maxwell maxwell; ///< of configurations a whole window apart
-    double gyration;        ///< mean R_g² of particles that are molecules' beads [λ²], else 0
+    struct maxwell maxwell;       ///< of configurations a whole window apart
+    struct whole_molecules whole; ///< that the particles are; zero: none
+    double gyration[2]; ///< Σ of the mean R_g² of a particle [λ²], of how many windows
 };
 
 /// Prepare to sample a simulation from step `begin` on, for `steps` steps. Only windows that end
@@ -88,12 +90,13 @@ void mf_motion_sample(struct motion *motion, const struct simulation *simulation
 /// @param[in] state  shape [2, dimensions, count]: unwrapped positions and velocities
 void mf_motion_add(struct motion *motion, const double *state, int threads);
 
-/// Where particles are beads of molecules, look how large these are, once in a window. Fails:
-/// NO_MEMORY.
+/// Where particles are beads of molecules, look how large these are, once in a window; beads
+/// without bonds have no size. Fails: NO_MEMORY.
 enum status mf_motion_see_molecules(struct motion *motion,
                                     const struct particles *particles) MUST_USE;
 
 /// What goes with a checkpoint.
+enum { MOTION_SPANS = 5 + MAXWELL_SPANS };
 size_t mf_motion_spans(struct motion *motion, struct memory_span *spans);
 
 /// Arrays of lags + 1 numbers, from time 0 on in steps of plan.every · time_step.
@@ -112,7 +115,7 @@ struct motion_summary {
     double fit_begin, fit_end;    ///< the window of the least squares               [τ]
     double growth, growth_error; ///< exponent of the MSD over that window: 1 of what diffuses
     double bend, bend_error;     ///< what its slope changes by along that window, over the slope
-    double sizes; ///< MSD at its begin over R_g² of the molecules; 0 without molecules
+    double sizes; ///< MSD at its begin over the mean R_g² of a particle; 0 without molecules
     struct maxwell_summary maxwell; ///< NaN without friction: no thermostat
 };
 
@@ -135,9 +138,10 @@ struct motion_summary mf_motion_result(const struct motion *motion,
                                        const struct motion_curves *curves);
 
 /// Whether beads still move within their molecules where the window of D begins, however their MSD
-/// grows: it is below 5 R_g². Of Rouse's chain D is then 7 % too large or more: their MSD is that
-/// of the centre and 2 R_g² (1 − Σ_p 6/(π p)² exp(−p² t/τ)), and comes to 5 R_g² at t = 2.6 τ.
-/// Tested: test_motion_growth, cli/test_molecule_motion.
+/// grows: it is below 4 R_g². Of Rouse's chain D is then 7 % too large or more: the MSD is that of
+/// the centre, 12/π² R_g² t/τ, and 2 R_g² (1 − Σ_p 6/(π p)² exp(−p² t/τ)), which come to 4 R_g² at
+/// t = 1.8 τ, where the line of least squares up to 2 t has a slope 7 % too steep; at 3.5 R_g² 11
+/// %, at 5 2.6 %. Tested: test_motion_growth, cli/test_molecule_motion.
 bool mf_motion_is_within(const struct motion_summary *summary);
 
 /// Whether what moves does not diffuse yet over the window that D is of: it is within its

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 bool mf_motion_is_within(const struct motion_summary *s) {
-    static const double enough = 5;
+    static const double enough = 4;
     return s->sizes > 0 && s->sizes < enough;
 }
 

@@ -63,6 +63,18 @@ static void write_infinite(const struct motion_summary *s, const struct observab
     mf_json_put_measured(writer, "diffusion_infinite", "lambda^2/tau", diffusion, error);
 }
 
+/// That there is no D yet, and what the two of them say of each other.
+static void write_warning(const struct motion_summary *s, const struct units *units,
+                          struct json_writer *writer) {
+    char early[MOTION_EARLY_SIZE], text[STATUS_MESSAGE_SIZE + MOTION_EARLY_SIZE] = "";
+    const bool parted = mf_units_convert_message(units, mf_motion_assess(s)) != STATUS_OK;
+    mf_motion_early_text(s, early);
+    snprintf(text, sizeof text, "%s%s%s", early, early[0] && parted ? "; " : "",
+             parted ? mf_status_message() : "");
+    if (text[0])
+        mf_json_write_text(writer, "warning", text);
+}
+
 /// The object "motion": diffusion coefficients with errors, in cm²/s too when the units are known,
 /// and the test of the velocities.
 static void write_summary(const void *state, const struct observable_results *results,
@@ -71,11 +83,7 @@ static void write_summary(const void *state, const struct observable_results *re
     struct motion_summary s = mf_motion_result(state, NULL);
     mf_json_begin(writer, "motion");
     mf_statistics_mark_unknown_errors(&s.msd_error, 1);
-    char early[MOTION_EARLY_SIZE];
-    if (mf_motion_is_early(&s))
-        mf_json_write_text(writer, "warning", mf_motion_early_text(&s, early));
-    else if (mf_units_convert_message(units, mf_motion_assess(&s)) != STATUS_OK)
-        mf_json_write_text(writer, "warning", mf_status_message());
+    write_warning(&s, units, writer);
     mf_json_put_measured(writer, "diffusion_msd", "lambda^2/tau", s.msd, s.msd_error);
     write_infinite(&s, results, writer);
     mf_json_write_quantity(writer, "diffusion_green_kubo", "lambda^2/tau", s.green_kubo);

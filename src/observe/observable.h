@@ -28,7 +28,7 @@ struct observable_use;
 /// Observables in the list, targets of all of them, and spans of one, at most. What is more is
 /// found when the list is compiled and by test_observable; a target beyond them is not known to run
 /// files.
-enum { OBSERVABLES_MAX = 32, OBSERVABLE_TARGETS = 32, OBSERVABLE_MAX_SPANS = 80 };
+enum { OBSERVABLES_MAX = 32, OBSERVABLE_TARGETS = 32, OBSERVABLE_MAX_SPANS = 160 };
 
 /// Where and of what results are written.
 struct observable_results {

@@ -38,8 +38,14 @@ static enum status begin(void *state, const void *settings,
                          const struct configuration *configuration,
                          const struct measure_plan *plan) {
     const struct simulation *const simulation = configuration->simulation;
+    const struct integrator *integrator = simulation->setup.integrator;
     double virial[3][3];
     (void)settings, (void)plan;
+    if (integrator->events || integrator->solvent_particles)
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "pressure_tensor: %s of \"%s\" is not that of potentials; leave it out",
+            integrator->events ? "the pressure" : "the stress of the solvent", integrator->name);
     *(struct state *)state =
         (struct state){.dimensions = simulation->setup.box.dimensions,
                        .clock = configuration->sweeps ? 1 : configuration->time_step,

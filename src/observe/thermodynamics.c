@@ -5,6 +5,7 @@
 #include "base/number_text.h"
 #include "base/statistics.h"
 #include "forces/configurational.h"
+#include "forces/interaction.h"
 
 #include <math.h>
 
@@ -290,33 +291,41 @@ enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *s,
     return STATUS_OK;
 }
 
-/// Whether a flow that is driven may be in the velocities.
+/// Whether a flow that is driven may be in the velocities: of what carries beads along, or does
+/// work, or pulls at beads of unlike masses.
 static bool flows(const struct simulation_setup *setup) {
-    bool driven = !shows_forces(setup); // a solvent carries beads along
+    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
+    bool driven = !shows_forces(setup);
     for (int k = 0; k < setup->interactions; k++)
-        driven = driven || setup->interaction[k].kind->does_work;
+        driven =
+            driven || setup->interaction[k].kind->does_work ||
+            (setup->interaction[k].kind == &mf_uniform_force && masses.maximum > masses.minimum);
     return driven;
 }
 
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *s,
                                           const struct simulation_setup *setup) {
+    enum { MANY_BLOCKS = 50 };
+    static const double certain = 5.0 / 3; // of errors, as neighbours of few samples remember
+    const bool moves = simulation_has_velocities(setup);
     if (setup->integrator->samples || flows(setup) || !mf_simulation_is_thermal(setup) ||
-        s->blocks < MIN_BLOCKS) // in no time, or hot by the flow, or not known
+        !knows_positions(s, moves) ||
+        s->blocks < MANY_BLOCKS) // in no time, hot by the flow, unknown
         return STATUS_OK;
     // A slow bath lets both wander together.
-    const bool moves = simulation_has_velocities(setup);
     const double positions = s->temperature_configurational,
                  of_positions = s->temperature_configurational_error;
     const double wanted = moves ? s->temperature : setup->temperature;
     const double error = moves ? hypot(of_positions, s->temperature_error) : of_positions;
-    if (!is_off(positions, error, wanted))
+    if (!is_off(positions, certain * error, wanted))
         return STATUS_OK;
     const double kinetic_off = moves ? fabs(s->temperature / setup->temperature - 1) : 0;
     const bool kinetic = simulation_holds_temperature(setup) &&
                          kinetic_off > fabs(positions / setup->temperature - 1);
     return kinetic ? fail_step(true, s->temperature, s->temperature_error, setup->temperature,
-                               "lower \"time_step\"")
-                   : fail_step(false, positions, error, wanted, "lower \"time_step\"");
+                               "lower \"time_step\", or run for longer")
+                   : fail_step(false, positions, error, wanted,
+                               "lower \"time_step\", or run for longer");
 }
 
 struct thermodynamics_off mf_thermodynamics_off(const struct thermodynamics_summary *summary,

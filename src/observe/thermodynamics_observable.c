@@ -169,14 +169,15 @@ static enum status assess(const void *state, const struct simulation_setup *setu
     if (mf_thermodynamics_assess_unheld(&s, setup) != STATUS_OK)
         return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());
     TRY(assess_change(t, &s, setup));
-    if (mf_thermodynamics_assess_step(&s, setup) != STATUS_OK)
-        return mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());
     TRY(mf_equilibration_check("potential energy", "k_B T_0",
                                mf_thermodynamics_series(t, THERMODYNAMICS_POTENTIAL_ENERGY),
                                t->series.count));
-    return mf_equilibration_check("pressure", "k_B T_0/lambda^d",
-                                  mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
-                                  t->series.count);
+    TRY(mf_equilibration_check("pressure", "k_B T_0/lambda^d",
+                               mf_thermodynamics_series(t, THERMODYNAMICS_PRESSURE),
+                               t->series.count));
+    return mf_thermodynamics_assess_step(&s, setup) == STATUS_OK
+               ? STATUS_OK
+               : mf_status_fail(STATUS_UNCONVERGED, "%s", mf_status_marked());
 }
 
 /// Means with errors, and the object "physical" when the units are known.

@@ -162,26 +162,27 @@ static double find_end(const struct table *potential, double temperature, double
 
 static void doubt_potential(const struct scene *scene,
                             const struct scene_doubts_listener *listener) {
-    // Ions of a molten salt have 50, argon at its triple point 1.4.
-    static const double deepest = 80, abrupt = 20;
+    // Ions of a molten salt have 50, argon at its triple point 1.4, a cold crystal 100.
+    static const double deepest = 110, abrupt = 20;
     const struct table *potential = scene->setup.potential;
     const double temperature = scene->setup.temperature;
+    const char *const key = scene->known.curves > 0 ? "known" : "conservative";
     double cutoff = 0;
-    if (potential == NULL || !(temperature > 0))
+    if (potential == NULL || !(temperature > 0) || scene->many_body.law) // which may repel
         return;
     const double well = find_well(potential, temperature);
     const double end = find_end(potential, temperature, &cutoff);
     char unit[UNITS_NAME_SIZE];
     if (well > deepest)
         tell(listener,
-             "conservative: a well of %.3g k_B T, in which beads stay for ever: is its energy in "
+             "%s: a well of %.3g k_B T, which beads hardly ever leave: is its energy in "
              "another unit?",
-             well);
+             key, well);
     if (end > abrupt)
         tell(listener,
-             "conservative: the force ends abruptly at the cutoff, %.4g%s, where it is still %.2g "
+             "%s: the force ends abruptly at the cutoff, %.4g%s, where it is still %.2g "
              "k_B T over that length: is the cutoff, or a length, in another unit?",
-             mf_units_factor(&scene->units, "lambda") * cutoff,
+             key, mf_units_factor(&scene->units, "lambda") * cutoff,
              mf_units_suffix(&scene->units, "lambda", unit), end);
 }
 

@@ -25,6 +25,6 @@ static const double scene_longest_bond = 2.5;
 /// Tell of a temperature in kelvins where none are meant, or in degrees Celsius; a time step
 /// many times as long as beads, their potential or their bonds allow (dynamics/usual_step.h); a
 /// bond that is longer than two and a half mean distances of the beads, or shorter than any between
-/// atoms; an angle of at most π degrees; a potential with a well of more than 80 k_B T, or whose
+/// atoms; an angle of at most π degrees; a potential with a well of more than 110 k_B T, or whose
 /// force ends abruptly, with 20 k_B T over its cutoff. Tested: cli/test_doubts.
 void mf_scene_doubts(const struct scene *scene, const struct scene_doubts_listener *listener);

@@ -3,8 +3,6 @@
 
 #include "base/memory.h"
 
-#include <math.h>
-
 enum status mf_whole_molecules_init(struct whole_molecules *whole,
                                     const struct topology *topology) {
     const size_t kinds = (size_t)topology->kinds;
@@ -58,20 +56,13 @@ static double sum_squares(const struct whole_molecules *whole, int beads) {
     return squares;
 }
 
-enum status mf_whole_molecules_gyration(const struct particles *particles, double *gyration) {
-    const struct topology *topology = particles->topology;
-    double squares = 0, beads = 0;
-    *gyration = NAN;
-    if (topology == NULL)
-        return STATUS_OK;
-    CLEARED_BY(mf_whole_molecules_clear) struct whole_molecules whole = {0};
-    TRY(mf_whole_molecules_init(&whole, topology));
-    for (int k = 0; k < topology->kinds; k++)
-        for (int64_t m = 0; m < topology->kind[k].count; m++) {
-            mf_whole_molecules_make(&whole, particles, k, m);
-            squares += sum_squares(&whole, topology->kind[k].beads);
-            beads += topology->kind[k].beads;
+double mf_whole_molecules_gyration(struct whole_molecules *whole,
+                                   const struct particles *particles) {
+    double squares = 0;
+    for (int k = 0; k < whole->topology->kinds; k++)
+        for (int64_t m = 0; m < whole->topology->kind[k].count; m++) {
+            mf_whole_molecules_make(whole, particles, k, m);
+            squares += sum_squares(whole, whole->topology->kind[k].beads);
         }
-    *gyration = squares / beads;
-    return STATUS_OK;
+    return squares;
 }

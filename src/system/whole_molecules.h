@@ -24,7 +24,7 @@ void mf_whole_molecules_clear(struct whole_molecules *whole);
 void mf_whole_molecules_make(struct whole_molecules *whole, const struct particles *particles,
                              int kind, int64_t m);
 
-/// The mean of R_g² over all beads of molecules, of equal masses [λ²]; NaN of particles that are
-/// not joined. Fails: NO_MEMORY. Tested: cli/test_molecule_motion.
-enum status mf_whole_molecules_gyration(const struct particles *particles,
-                                        double *gyration) MUST_USE;
+/// Σ R_g² of all beads of molecules, as if of equal masses [λ²]. The particles are joined. Tested:
+/// cli/test_molecule_motion.
+double mf_whole_molecules_gyration(struct whole_molecules *whole,
+                                   const struct particles *particles);

@@ -163,38 +163,46 @@ static void print_molecules(struct progress *progress, const struct measure_resu
     }
 }
 
-/// Bonds that are twice as long as beads are apart join beads that are none: in another order than
-/// that of the trajectory any two beads are half a box apart. So do those of two lengths, with
-/// hardly any between.
+/// Bonds of beads in another order than that of the trajectory join any two, which are half a box
+/// apart, in all groups.
+static bool joins_any_beads(const struct molecules *molecules, const struct bonded_moments *found,
+                            double edge) {
+    static const double farthest = 0.4;
+    bool any = molecules->groups[BONDED_BOND] > 0;
+    for (int g = 0; g < molecules->groups[BONDED_BOND]; g++)
+        any = any && found[g].mean > farthest * edge;
+    return any;
+}
+
+/// Bonds that are hardly any, and those of two lengths with hardly any between.
 static enum status print_doubtful_bonds(struct progress *progress,
                                         const struct measure_result *result) {
-    static const double farthest = 2;
     static const char question[] = "are the beads of --molecules in the order of the trajectory?";
     const struct measured *const measured = result->measured;
     const struct molecules *const molecules = measured->molecules.molecules;
+    struct bonded_moments found[MOLECULES_MAX_GROUPS];
+    char unit[UNITS_NAME_SIZE];
     if (molecules == NULL || measured->in_vacuum)
         return STATUS_OK;
-    const double apart =
-        cbrt(mf_measured_mean(&measured->volume, NULL) / (double)result->mapping->beads);
+    const double factor = find_unit(result, "lambda", unit);
+    const double edge = cbrt(mf_measured_mean(&measured->volume, NULL));
     for (int g = 0; g < molecules->groups[BONDED_BOND]; g++) {
-        struct bonded_moments found;
-        char unit[UNITS_NAME_SIZE];
         double part[2];
-        TRY(mf_measured_moments(measured, BONDED_BOND, g, &found));
+        TRY(mf_measured_moments(measured, BONDED_BOND, g, &found[g]));
         TRY(mf_measured_parts(measured, BONDED_BOND, g, part));
-        const char *const name = molecules->group[BONDED_BOND][g].name;
-        const double factor = find_unit(result, "lambda", unit);
-        if (found.mean > farthest * apart)
-            mf_progress_print(progress,
-                              "mesofit: warning: bonds \"%s\" are %.3g %s long, and beads %.3g %s "
-                              "apart: %s",
-                              name, factor * found.mean, unit, factor * apart, unit, question);
-        else if (isfinite(part[0]))
+        if (isfinite(part[0]))
             mf_progress_print(progress,
                               "mesofit: warning: bonds \"%s\" are either some %.3g or some %.3g %s "
                               "long, and hardly any between: %s",
-                              name, factor * part[0], factor * part[1], unit, question);
+                              molecules->group[BONDED_BOND][g].name, factor * part[0],
+                              factor * part[1], unit, question);
     }
+    if (joins_any_beads(molecules, found, edge))
+        mf_progress_print(progress,
+                          "mesofit: warning: bonds \"%s\" are %.3g %s long, as far as any two "
+                          "beads of a box of %.3g %s are apart: %s",
+                          molecules->group[BONDED_BOND][0].name, factor * found[0].mean, unit,
+                          factor * edge, unit, question);
     return STATUS_OK;
 }
 

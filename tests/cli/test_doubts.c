@@ -113,15 +113,15 @@ static void test_bonds_in_angstrom_and_angles_in_radians_are_doubted(void **stat
 static void test_potentials_that_hold_or_end_as_none_does_are_doubted(void **state) {
     static const char beads[] =
         "{\"box\": [9, 9, 9], \"particles\": {\"count\": 400}, \"time_step\": 1e-4,\n"
-        "\"conservative\": {\"law\": \"lennard-jones\", \"epsilon\": 1, \"sigma\": 1, "
+        "\"conservative\": {\"law\": \"lennard-jones\", \"epsilon\": 5, \"sigma\": 1, "
         "\"cutoff\": 2.5},\n"
         "\"dissipative\": {\"law\": \"power\", \"sigma\": 3},\n"
         "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n";
-    assert_doubted(*state, "simulate", beads, "\"epsilon\": 1,", "\"epsilon\": 119.8,",
-                   "warning: conservative: a well of 118 k_B T, in which beads stay for ever");
-    // 24 (2 (3/2.5)^12 - (3/2.5)^6) is 356.
+    assert_doubted(*state, "simulate", beads, "\"epsilon\": 5,", "\"epsilon\": 119.8,",
+                   "warning: conservative: a well of 118 k_B T, which beads hardly ever leave");
+    // 120 (2 (3/2.5)^12 - (3/2.5)^6) is 1782.
     assert_doubted(*state, "simulate", beads, "\"sigma\": 1,", "\"sigma\": 3,",
-                   "the force ends abruptly at the cutoff, 2.5, where it is still 3.6e+02 k_B T");
+                   "the force ends abruptly at the cutoff, 2.5, where it is still 1.8e+03 k_B T");
 }
 
 /// A scene without a time step: by the rule of a fit's verification; ten times that is doubted.

@@ -19,9 +19,9 @@ static void simulate(struct temporary_folder *folder, const char *scene, const c
     run_program_assert_code(&result, 0);
 }
 
-/// Two beads 0.5 apart, in the direction (0.6, 0.8), one through an edge of the box, in a step in
-/// which they hardly move: F = 25 (1 - 0.5), so that r_a F_b is 6.25 e_a e_b, and N k_B T/V joins
-/// the diagonal. Φ gives F to a few parts in a million.
+/// Two beads 0.5 apart, in the plane in the direction (0.6, 0.8), in space (0.48, 0.64, 0.6), one
+/// through an edge of the box, in a step in which they hardly move: F = 25 (1 - 0.5), so that r_a
+/// F_b is 6.25 e_a e_b, and N k_B T/V joins the diagonal. Φ gives F to a few parts in a million.
 static void test_a_pair_has_the_tensor_of_its_force(void **state) {
     static const char space[] =
         "{\"box\": [4, 5, 6], \"time_step\": 1e-12, \"temperature\": 0.5,\n"
@@ -37,25 +37,36 @@ static void test_a_pair_has_the_tensor_of_its_force(void **state) {
         "\"measure\": {\"equilibration\": 0, \"samples\": 2, \"every\": 1}}\n";
     for (int dimensions = 2; dimensions <= 3; dimensions++) {
         const double volume = dimensions == 3 ? 120 : 20, carried = 2 * 0.5 / volume;
+        const double e[3] = {dimensions == 3 ? 0.48 : 0.6, dimensions == 3 ? 0.64 : 0.8, 0.6};
+        const char *const folder = dimensions == 3 ? "space" : "plane";
+        char key[64], file[64];
         small_inputs_write(*state, "places.tsv",
-                           dimensions == 3 ? "3.9 1.2 3\n0.2 1.6 3\n" : "3.9 1.2\n0.2 1.6\n", NULL,
-                           NULL);
-        simulate(*state, dimensions == 3 ? space : plane, dimensions == 3 ? "space" : "plane");
-        const char *const file = dimensions == 3 ? "space/summary.json" : "plane/summary.json";
-        results_assert_table(dimensions == 3 ? "space/pressure_tensor.tsv"
-                                             : "plane/pressure_tensor.tsv",
-                             dimensions == 3 ? 7 : 4, 2);
-        assert_close(results_number(file, "pressure_tensor.xx"), carried + 6.25 * 0.36 / volume,
-                     1e-6);
-        assert_close(results_number(file, "pressure_tensor.yy"), carried + 6.25 * 0.64 / volume,
-                     1e-6);
-        assert_close(results_number(file, "pressure_tensor.xy"), 6.25 * 0.48 / volume, 1e-6);
-        if (dimensions == 3) {
-            assert_close(results_number(file, "pressure_tensor.zz"), carried, 1e-6);
-            assert_close(results_number(file, "pressure_tensor.xz"), 0, 1e-6);
-            assert_close(results_number(file, "pressure_tensor.yz"), 0, 1e-6);
-        }
+                           dimensions == 3 ? "3.9 1.2 3\n0.14 1.52 3.3\n" : "3.9 1.2\n0.2 1.6\n",
+                           NULL, NULL);
+        simulate(*state, dimensions == 3 ? space : plane, folder);
+        snprintf(file, sizeof file, "%s/pressure_tensor.tsv", folder);
+        results_assert_table(file, dimensions == 3 ? 7 : 4, 2);
+        snprintf(file, sizeof file, "%s/summary.json", folder);
+        for (int a = 0; a < dimensions; a++)
+            for (int b = a; b < dimensions; b++) {
+                snprintf(key, sizeof key, "pressure_tensor.%c%c", "xyz"[a], "xyz"[b]);
+                assert_close(results_number(file, key),
+                             (a == b ? carried : 0) + 6.25 * e[a] * e[b] / volume, 1e-6);
+            }
     }
+}
+
+static void test_pressures_of_no_potential_are_refused(void **state) {
+    static const char hard[] =
+        "{\"dimensions\": 2, \"box\": [12, 12], \"time_step\": 0.1,\n"
+        "\"particles\": {\"count\": 50, \"radius\": 0.5}, \"dynamics\": {\"integrator\":\n"
+        "\"event-driven\"}, \"pressure_tensor\": {},\n"
+        "\"measure\": {\"equilibration\": 1, \"samples\": 2, \"every\": 1}}\n";
+    small_inputs_write(*state, "scene.json", hard, NULL, NULL);
+    RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "pressure_tensor: the pressure of \"event-driven\" is not that of "
+                                "potentials; leave it out");
 }
 
 static const char fluid[] =
@@ -101,6 +112,7 @@ int main(void) {
     cmocka_unit_test_setup_teardown(test, small_inputs_enter_without_gnuplot, small_inputs_leave)
     const struct CMUnitTest tests[] = {
         IN_FOLDER(test_a_pair_has_the_tensor_of_its_force),
+        IN_FOLDER(test_pressures_of_no_potential_are_refused),
         IN_FOLDER(test_axes_of_a_fluid_are_alike),
         IN_FOLDER(test_it_goes_on_with_the_same_bits),
     };

@@ -240,12 +240,18 @@ static void test_judge_of_a_fit_sees_a_few_percent(void **state) {
     assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
     assert_fails(mf_thermodynamics_assess_fit(&s, &fluid.setup), STATUS_UNSTABLE,
                  "-3.50(50) % off");
+    s.blocks = 49;
+    assert_ok(mf_thermodynamics_assess_step(&s, &fluid.setup));
+    s.blocks = 50;
     assert_fails(mf_thermodynamics_assess_step(&s, &fluid.setup), STATUS_UNSTABLE,
                  "configurational temperature is -4.17(53) % off");
     // A slow bath: both together.
     s.temperature = 0.97;
     assert_ok(mf_thermodynamics_assess_step(&s, &fluid.setup));
     s.temperature = 1.007;
+    s.laplacian_error = 0.3; // forces hardly act
+    assert_ok(mf_thermodynamics_assess_step(&s, &fluid.setup));
+    s.laplacian_error = 0;
     // Beads that a wall pushes, by no force that the positions would tell of.
     const struct integrator *without = fluid.setup.integrator;
     struct integrator with = *without;
