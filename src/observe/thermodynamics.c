@@ -210,6 +210,12 @@ static bool shows_forces(const struct simulation_setup *setup) {
     return setup->integrator->solvent_particles == NULL;
 }
 
+/// Whether a temperature is off by more than little and by more than chance.
+static bool is_off(double temperature, double error, double wanted) {
+    static const double min = 0.025, errors = 3;
+    return fabs(temperature - wanted) > fmax(min * wanted, errors * error);
+}
+
 enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summary,
                                      const struct simulation_setup *setup) {
     const struct thermodynamics_summary *s = summary;
@@ -233,8 +239,10 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
                               s->temperature_configurational, wanted,
                               setup->integrator->samples ? "" : "lower \"time_step\", or ");
     // A step that is too long parts the two.
-    const bool together = positions && agrees(s->temperature_configurational,
-                                              s->temperature_configurational_error, s->temperature);
+    const bool together =
+        positions &&
+        !is_off(s->temperature_configurational,
+                hypot(s->temperature_configurational_error, s->temperature_error), s->temperature);
     return mf_status_fail(STATUS_UNSTABLE,
                           "the temperature is %.3g" STATUS_TEMPERATURE
                           " by the velocities and %.3g" STATUS_TEMPERATURE " by the positions, not "
@@ -242,12 +250,6 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
                           s->temperature, s->temperature_configurational, wanted,
                           together ? "equilibrate for longer, or with more friction"
                                    : "lower \"time_step\", or equilibrate for longer");
-}
-
-/// Whether a temperature is off by more than little and by more than chance.
-static bool is_off(double temperature, double error, double wanted) {
-    static const double min = 0.025, errors = 3;
-    return fabs(temperature - wanted) > fmax(min * wanted, errors * error);
 }
 
 enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary *s,

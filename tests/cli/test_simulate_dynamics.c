@@ -248,12 +248,38 @@ static void test_candidates_are_simulated_with_interactions_and_without_velociti
     assert_true(results_number("out/summary.json", "temperature_configurational") > 0.5);
 }
 
+/// Velocity Verlet of dissipative particles parts the two temperatures at a step at which another
+/// integrator does not; no line at a step that is short.
+static void test_long_steps_are_told_by_the_temperatures(void **state) {
+    static const char fluid[] =
+        "{\"seed\": 3, \"density\": 3, \"time_step\": STEP, \"particles\": {\"count\": 375},\n"
+        "\"conservative\": {\"law\": \"soft-repulsion\"}, \"dissipative\": {\"law\": \"power\"},\n"
+        "\"dynamics\": {\"integrator\": \"dpd-verlet\"},\n"
+        "\"measure\": {\"equilibration\": 300, \"samples\": 300, \"every\": 5}}\n";
+    static const struct {
+        const char *step, *says;
+    } cases[] = {{"0.02", NULL},
+                 {"0.05", "% off: the time step is long for this potential"},
+                 {"0.06", ": lower \"time_step\", or equilibrate for longer"}};
+    static struct run_program_result result;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        small_inputs_write(*state, "scene.json", fluid, "STEP", cases[k].step);
+        RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out", "--force");
+        run_program_assert_code(&result, 0);
+        if (cases[k].says)
+            assert_contains(result.err, cases[k].says);
+        else
+            assert_null(strstr(result.err, "temperature is"));
+    }
+}
+
 int main(void) {
 #define TEST(name)                                                                                 \
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
     const struct CMUnitTest tests[] = {
         TEST(test_simulate_takes_a_trap_and_dynamics_without_velocities),
         TEST(test_simulate_leaves_out_what_needs_velocities),
+        TEST(test_long_steps_are_told_by_the_temperatures),
         cmocka_unit_test_setup_teardown(test_figure_of_motion_is_drawn_without_velocities,
                                         small_inputs_enter, small_inputs_leave),
         TEST(test_errors_of_one_sample_are_null),

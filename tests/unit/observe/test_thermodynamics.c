@@ -209,6 +209,11 @@ static void test_judge_tells_when_a_temperature_is_off(void **state) {
     s.temperature = 1.12;
     assert_fails(mf_thermodynamics_assess(&s, &fluid.setup), STATUS_UNSTABLE,
                  "1.12 by the velocities");
+    // A bath that is slow leaves the two together.
+    s.temperature = 0.8;
+    s.temperature_configurational = 0.79;
+    s.temperature_configurational_error = 0.01;
+    assert_fails(mf_thermodynamics_assess(&s, &fluid.setup), STATUS_UNSTABLE, "more friction");
     s.temperature_configurational = NAN;
     s.temperature = 1.02;
     assert_ok(mf_thermodynamics_assess(&s, &fluid.setup));
