@@ -121,9 +121,10 @@ enum status mf_inversion_observe(struct inversion *inversion,
 enum status mf_inversion_sample(struct inversion *inversion, struct inversion_state *state,
                                 const struct inverse_listener *listener) MUST_USE;
 
-/// Whether samples that have not settled do for a step: all that is asked for is so far off that
-/// what has not settled is half of it at most. A potential that is far off may freeze a liquid
-/// or make it cavitate, which takes very long and gives no better direction to the target. Tested:
+/// Whether samples that have not settled do for a step: something that is asked for is so far off
+/// that what has not settled is half of it at most, and so is all else, or agrees and drifts by
+/// half of its noise at most. A potential that is far off may freeze a liquid or make it cavitate,
+/// which takes very long and gives no better direction to the target. Tested:
 /// test_inversion_equilibrium.
 bool mf_inversion_is_far_beyond_drift(const struct inversion_state *state);
 

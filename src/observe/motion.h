@@ -31,6 +31,8 @@ struct motion_plan {
 
 extern const struct field mf_motion_plan_fields[];
 
+enum { MOTION_MAX_BLOCKS = 64 };
+
 /// Cost of a sample: particles × lags / origin_every.
 struct motion {
     struct motion_plan plan;

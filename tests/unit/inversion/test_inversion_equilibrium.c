@@ -334,6 +334,44 @@ test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled(void
     gsl_rng_free(rng);
 }
 
+/// Of twelve bins the first six have the one that changes by 12, 24 of a squared noise on average,
+/// and the others none to speak of: half of them are far from their targets, and half agree.
+static void test_a_section_that_agrees_is_waited_for_only_where_it_drifts(void **state) {
+    (void)state;
+    static struct made made;
+    double variance[BINS];
+    bool seen[BINS];
+    struct inverse_problem problem = {.targets.target[TARGET_RDF].count = BINS};
+    gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
+    make(&made, rng, 3, 12);
+    struct inversion_state *samples = &made.state;
+    struct inversion_section *section = samples->assessment.section;
+    samples->assessment.sections = 2;
+    samples->problem = &problem;
+    samples->variance = variance;
+    samples->grid.seen = seen;
+    samples->gradient = INFINITY;
+    samples->box = (struct box){3, {1, 1, 1}};
+    for (size_t n = 0; n < BINS; n++) {
+        variance[n] = n < 6 ? 1 : 10;
+        seen[n] = 1;
+    }
+    for (size_t far = 0; far < 2; far++) { // which of them has its number first is no matter
+        section[far] = (struct inversion_section){
+            .known = 0, .known_count = 6, .probable = 1, .misfit = 14 * 14};
+        section[1 - far] =
+            (struct inversion_section){.known = 6, .known_count = 6, .probable = 1, .misfit = 0.9};
+        assert_true(mf_inversion_is_far_beyond_drift(samples));
+        section[1 - far].misfit = 0.01; // of its noise, not of its misfit
+        assert_true(mf_inversion_is_far_beyond_drift(samples));
+        section[far].misfit = 0.9; // nothing is off
+        assert_false(mf_inversion_is_far_beyond_drift(samples));
+        section[1 - far].misfit = 14 * 14; // what drifts agrees
+        assert_false(mf_inversion_is_far_beyond_drift(samples));
+    }
+    gsl_rng_free(rng);
+}
+
 // Samples of an iteration -------------------------------------------------------------------------
 
 enum { POINTS = 12, SOFT_REPLICAS = 8, FIRST = 8, MAX = 200 * FIRST, SEEDS = 16 };
@@ -410,6 +448,7 @@ int main(void) {
         cmocka_unit_test(test_shift_is_the_way_along_the_samples_and_the_scatter_of_replicas),
         cmocka_unit_test(
             test_samples_tell_the_way_to_a_target_that_is_far_from_what_has_not_settled),
+        cmocka_unit_test(test_a_section_that_agrees_is_waited_for_only_where_it_drifts),
         cmocka_unit_test(test_samples_are_equilibration_until_they_have_settled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
