@@ -36,8 +36,25 @@ static enum status note(struct frames *frames, const char *format, ...) {
 
 // Files -------------------------------------------------------------------------------------------
 
+/// Whether a file is one of those before it.
+static bool is_given_again(const struct frames *frames) {
+    struct stat here, before;
+    bool again = false;
+    if (stat(frames->plan.file[frames->at], &here) != 0 || !S_ISREG(here.st_mode))
+        return false;
+    for (size_t k = 0; k < frames->at && !again; k++)
+        again = stat(frames->plan.file[k], &before) == 0 && before.st_dev == here.st_dev &&
+                before.st_ino == here.st_ino;
+    return again;
+}
+
 static enum status open_file(struct frames *frames) {
     const char *const file = frames->plan.file[frames->at];
+    if (is_given_again(frames))
+        TRY(note(
+            frames,
+            "mesofit: warning: %s is given twice: frames that count twice make errors too small",
+            file));
     TRY(mf_trajectory_open(&frames->trajectory, file, &frames->plan.options));
     frames->open = true;
     if (frames->at == 0 && frames->trajectory.note[0])

@@ -84,10 +84,11 @@ static enum status find_files(struct film *film, const char *folder) {
     if (count <= 0)
         count = list(film->snapshots, is_json, &entries);
     if (count <= 0)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: no snapshots to make a film of; the scene needs "
-                              "\"snapshots\": {\"every\": 100, \"formats\": [\"vtp\"]}",
-                              folder);
+        return mf_status_fail(
+            STATUS_BAD_INPUT,
+            "%s: no snapshots to make a film of, which is of VTP or JSON; the scene needs "
+            "\"snapshots\": {\"every\": 100, \"formats\": [\"vtp\"]}",
+            folder);
     const enum status status = choose_files(film, entries, count);
     for (int k = 0; k < count; k++)
         free(entries[k]);

@@ -71,8 +71,8 @@ bool mf_fit_closing_is_noise(const struct unknowns *unknowns, const struct targe
             snprintf(
                 reason, INVERSE_REASON_SIZE,
                 "%.24s is mostly noise: only %.0f %% of it is above two of its standard errors, "
-                "%.2g%.16s rms of %.2g; more exact targets of motion, or fewer \"coefficients\", "
-                "are needed",
+                "%.2g%.16s rms of %.2g; try a shorter \"cutoff\" of it, fewer \"coefficients\", "
+                "or more exact targets of motion",
                 name, 100 * known.seen, factor * known.error,
                 mf_units_suffix(units, mf_unknowns_unit(kind), unit), factor * known.rms);
         return true;

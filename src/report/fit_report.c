@@ -310,13 +310,13 @@ static void print_integrals(struct progress *to, const struct fit_file *fit,
     }
 }
 
-/// " (at this time step; about +0.12(2) without it)".
+/// " (at this time step; without it about 0.12(2) more)".
 static void report_shift(const struct verification *v, double scale, char *text, size_t size) {
     char shift[NUMBER_TEXT_SIZE];
     mf_number_text(scale * fabs(v->shift.pressure), scale * v->shift.error, shift);
     if (mf_fit_step_shifts_pressure(v))
-        snprintf(text, size, " (at this time step; about %s%s without it)",
-                 v->shift.pressure < 0 ? "+" : "-", shift);
+        snprintf(text, size, " (at this time step; without it about %s %s)", shift,
+                 v->shift.pressure < 0 ? "more" : "less");
 }
 
 /// ", density 32.61(2) nm^-3", where it may change.

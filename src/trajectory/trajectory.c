@@ -374,6 +374,11 @@ enum status mf_trajectory_units_find(const char *name, struct trajectory_scale *
             *scale = scales[k];
             return STATUS_OK;
         }
+    if (strcmp(name, "angstrom-fs") == 0)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "unknown units \"%s\"; of trajectories they are "
+                              "called \"real\"",
+                              name);
     mf_nearest_hint(name, mf_trajectory_unit_names, STYLES, hint, sizeof hint);
     return mf_status_fail(STATUS_BAD_INPUT, "unknown units \"%s\"; %s", name, hint);
 }

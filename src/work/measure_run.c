@@ -372,8 +372,9 @@ static enum status write_results(struct run *run, bool interrupted) {
         mf_progress_print(&run->progress, "beads of %zu frames in %s", run->beads.frames,
                           run->request->beads);
     }
-    mf_progress_print(&run->progress, "%zu frames of %zu beads in %.3g s; results in %s",
-                      run->measured.frames, run->mapping.beads, result.seconds, run->folder.path);
+    mf_progress_print(&run->progress, "%zu frame%s of %zu beads in %.3g s; results in %s",
+                      run->measured.frames, run->measured.frames == 1 ? "" : "s",
+                      run->mapping.beads, result.seconds, run->folder.path);
     mf_measure_print_next(&run->progress, &result);
     return STATUS_OK;
 }

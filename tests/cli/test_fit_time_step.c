@@ -88,7 +88,7 @@ static void test_step_that_the_file_gives_is_kept_and_what_would_hold_is_told(vo
                     "time step, 0.018 tau, is too long for this potential; use about 0.0");
     assert_true(results_number("out/summary.json", "verification_time_step") == 0.018);
     // The wall is 7 % too cold by the positions, and its pressure too low: the sign is known.
-    assert_contains(result.err, "(at this time step; about +0.0");
+    assert_contains(result.err, "(at this time step; without it about 0.0");
     assert_true(results_number("out/summary.json", "pressure_of_time_step") < 0);
 }
 

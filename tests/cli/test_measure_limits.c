@@ -203,6 +203,10 @@ static void test_frames_of_one_time_are_used_when_they_are_independent(void **st
     RUN_PROGRAM(&result, "measure", "one.gro", "two.gro", "--static", "-o", "out");
     run_program_assert_code(&result, 0);
     assert_true(results_number("out/summary.json", "frames") == 3);
+    assert_null(strstr(result.err, "is given twice"));
+    RUN_PROGRAM(&result, "measure", "one.gro", "two.gro", "./one.gro", "--static", "-o", "twice");
+    run_program_assert_code(&result, 0);
+    assert_contains(result.err, "warning: ./one.gro is given twice: frames that count twice make");
     RUN_PROGRAM(&result, "measure", "one.gro", "two.gro", "-o", "in-time");
     run_program_assert_code(&result, 0);
     assert_true(results_number("in-time/summary.json", "frames") == 1);
