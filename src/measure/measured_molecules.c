@@ -144,8 +144,7 @@ static enum status fail_bead(const struct work *work, size_t entry, int k, int b
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: molecules.%s: bead %d of number %lld would be the bead of atom %zu, which is of type "
-        "\"%s\" and not \"%s\": are the kinds, their numbers and beads those of the trajectory, in "
-        "its "
+        "\"%s\" and not \"%s\": are kinds, numbers and beads those of the trajectory, in its "
         "order?",
         work->file, kind->name, bead + 1, (long long)work->count[k] + 1,
         work->entry[entry].atom + 1, work->mapping->type_name[type_of(work, entry)],
