@@ -87,9 +87,14 @@ void mf_measured_end(struct measured *measured);
 enum status mf_measured_moments(const struct measured *measured, int order, int group,
                                 struct bonded_moments *moments) MUST_USE;
 
-/// The means of its two parts, if a deep valley is between; else NaN. Fails: NO_MEMORY.
-enum status mf_measured_parts(const struct measured *measured, int order, int group,
-                              double part[2]) MUST_USE;
+/// The means of two parts that the lengths of a group of bonds have, as
+/// mf_bonded_distribution_parts, else NaN; and which share of them is beyond all bins, that is
+/// twice the longest mean of a group in the first frame. Fails: NO_MEMORY.
+struct measured_lengths {
+    double part[2], beyond, end; ///< end: of the bins
+};
+enum status mf_measured_lengths(const struct measured *measured, int group,
+                                struct measured_lengths *lengths) MUST_USE;
 
 /// The state of an observable that is measured, NULL of one that is not, and g(r), if there is one.
 const void *mf_measured_state(const struct measured *measured, const struct observable *observable);

@@ -17,14 +17,22 @@ enum status mf_measured_moments(const struct measured *measured, int order, int 
     return STATUS_OK;
 }
 
-enum status mf_measured_parts(const struct measured *measured, int order, int group,
-                              double part[2]) {
-    const void *const state = mf_measured_state(measured, mf_bonded_distribution_of(order));
+enum status mf_measured_lengths(const struct measured *measured, int group,
+                                struct measured_lengths *lengths) {
+    const void *const state = mf_measured_state(measured, mf_bonded_distribution_of(BONDED_BOND));
+    const struct topology *const topology = &measured->molecules.molecules->topology;
+    const double all = (double)measured->frames *
+                       (double)mf_bonded_distribution_terms(topology, BONDED_BOND, group);
     struct bonded_bins bins;
+    double inside = 0;
     OWNED double *counts = mf_bonded_distribution_counts(state, group, &bins);
     if (counts == NULL)
         return STATUS_NO_MEMORY;
-    mf_bonded_distribution_parts(&bins, counts, part);
+    mf_bonded_distribution_parts(&bins, counts, lengths->part);
+    for (size_t k = 0; k < bins.count; k++)
+        inside += counts[k];
+    lengths->beyond = 1 - inside / all;
+    lengths->end = bins.low + (double)bins.count * bins.width;
     return STATUS_OK;
 }
 

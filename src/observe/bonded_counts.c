@@ -31,11 +31,30 @@ static size_t find_valley(const struct bonded_bins *bins, const double *p, doubl
     return valley;
 }
 
+/// What lies beyond twice the median, if it is a twentieth of all or more: `bins->count` if not.
+static size_t find_tail(const struct bonded_bins *bins, const double *p, double all) {
+    static const double least = 0.05, farther = 2;
+    double below = 0, beyond = 0, median = INFINITY;
+    size_t tail = bins->count;
+    for (size_t k = 0; k < bins->count; k++) {
+        const double centre = bonded_bins_centre(bins, k);
+        median = below + p[k] >= 0.5 * all && isinf(median) ? centre : median;
+        below += p[k];
+        if (centre > farther * median) {
+            tail = tail == bins->count ? k - 1 : tail;
+            beyond += p[k];
+        }
+    }
+    return beyond >= least * all ? tail : bins->count;
+}
+
 void mf_bonded_distribution_parts(const struct bonded_bins *bins, const double *p, double part[2]) {
     double all = 0, sum[2] = {0}, moment[2] = {0};
     for (size_t k = 0; k < bins->count; k++)
         all += p[k];
-    const size_t valley = find_valley(bins, p, all);
+    size_t valley = find_valley(bins, p, all);
+    if (valley == bins->count)
+        valley = find_tail(bins, p, all);
     for (size_t k = 0; k < bins->count; k++) {
         sum[k > valley] += p[k];
         moment[k > valley] += p[k] * bonded_bins_centre(bins, k);

@@ -50,9 +50,7 @@ const char *mf_motion_early_text(const struct motion_summary *s, char text[MOTIO
     if (grows_otherwise(s))
         snprintf(text, MOTION_EARLY_SIZE, "no D yet: the MSD still grows as t^%s", growth);
     else if (mf_motion_is_within(s))
-        snprintf(text, MOTION_EARLY_SIZE,
-                 "no D yet: beads still move within their molecules, the MSD begins at %.2g R_g^2",
-                 s->sizes);
+        snprintf(text, MOTION_EARLY_SIZE, "no D yet: beads still move within their molecules");
     else if (bends(s))
         snprintf(text, MOTION_EARLY_SIZE,
                  "no D yet: the slope of the MSD still changes by %.0f %% along the window",

@@ -3,6 +3,7 @@
 
 #include "base/memory.h"
 #include "base/statistics.h"
+#include "forces/many_body.h"
 #include "io/data_table.h"
 #include "observe/bound_pairs.h"
 #include "observe/measure.h"
@@ -248,6 +249,9 @@ static enum status assess_binding(const struct simulation_setup *setup, const st
     static const double deep = 3, enough = 10;
     const struct bound_pairs bound = mf_bound_pairs_find(setup, pair);
     char name[COMPOSITION_PAIR_NAME_SIZE];
+    for (int k = 0; k < setup->interactions; k++)
+        if (setup->interaction[k].kind == &mf_many_body) // which may hold beads apart
+            return STATUS_OK;
     if (!(bound.depth >= deep) || time >= enough * bound.lifetime ||
         !were_within(rdf, (size_t)pair, bound.edge))
         return STATUS_OK;

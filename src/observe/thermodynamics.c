@@ -205,9 +205,28 @@ static bool knows_positions(const struct thermodynamics_summary *s, bool has_vel
            !(has_velocities && s->laplacian_error > known);
 }
 
-/// Walls and obstacles of a solvent push beads by no force that the positions would tell of.
+static bool acts(const struct simulation_setup *setup, const struct interaction *kind) {
+    bool found = false;
+    for (int k = 0; k < setup->interactions; k++)
+        found = found || setup->interaction[k].kind == kind;
+    return found;
+}
+
+/// Walls and obstacles of a solvent push beads by no force that the positions would tell of, and a
+/// uniform force by one that they tell nothing of.
 static bool shows_forces(const struct simulation_setup *setup) {
-    return setup->integrator->solvent_particles == NULL;
+    return setup->integrator->solvent_particles == NULL && !acts(setup, &mf_uniform_force);
+}
+
+/// Whether a flow that is driven may be in the velocities: of what carries beads along, or does
+/// work, or pulls at beads of unlike masses.
+static bool flows(const struct simulation_setup *setup) {
+    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
+    bool driven = setup->integrator->solvent_particles != NULL ||
+                  (acts(setup, &mf_uniform_force) && masses.maximum > masses.minimum);
+    for (int k = 0; k < setup->interactions; k++)
+        driven = driven || setup->interaction[k].kind->does_work;
+    return driven;
 }
 
 /// Whether a temperature is off by more than little and by more than chance.
@@ -224,9 +243,10 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
     const double wanted = simulation_holds_temperature(setup) ? setup->temperature : s->temperature;
     const bool nobody =
         setup->integrator->solvent_particles && isnan(s->temperature); // a solvent alone
+    const bool driven = setup->integrator->solvent_particles == NULL && flows(setup);
     if (s->blocks < MIN_BLOCKS || nobody || !mf_simulation_is_thermal(setup))
         return STATUS_OK;
-    if ((!has_velocities || agrees(s->temperature, s->temperature_error, wanted)) &&
+    if ((!has_velocities || driven || agrees(s->temperature, s->temperature_error, wanted)) &&
         (!positions ||
          (agrees(s->temperature_configurational, s->temperature_configurational_error, wanted) &&
           (has_velocities || !is_absurd(s->temperature_configurational, wanted)))))
@@ -293,16 +313,17 @@ enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *s,
     return STATUS_OK;
 }
 
-/// Whether a flow that is driven may be in the velocities: of what carries beads along, or does
-/// work, or pulls at beads of unlike masses.
-static bool flows(const struct simulation_setup *setup) {
-    const struct attributes_range masses = mf_attributes_span(&setup->attribute[ATTRIBUTES_MASS]);
-    bool driven = !shows_forces(setup);
-    for (int k = 0; k < setup->interactions; k++)
-        driven =
-            driven || setup->interaction[k].kind->does_work ||
-            (setup->interaction[k].kind == &mf_uniform_force && masses.maximum > masses.minimum);
-    return driven;
+/// A bath that does not hold the temperature leaves positions and velocities at another one.
+static enum status assess_bath(const struct thermodynamics_summary *s,
+                               const struct simulation_setup *setup, double certain) {
+    if (!simulation_has_velocities(setup) || !simulation_holds_temperature(setup) ||
+        !is_off(s->temperature, certain * s->temperature_error, setup->temperature))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "the temperature is %.3g" STATUS_TEMPERATURE
+                          ", not %.3g" STATUS_TEMPERATURE ": friction hardly holds it; more of it, "
+                          "or with a longer cutoff, or a longer run, does",
+                          s->temperature, setup->temperature);
 }
 
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *s,
@@ -311,16 +332,15 @@ enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *s
     static const double certain = 5.0 / 3; // of errors, as neighbours of few samples remember
     const bool moves = simulation_has_velocities(setup);
     if (setup->integrator->samples || flows(setup) || !mf_simulation_is_thermal(setup) ||
-        !knows_positions(s, moves) ||
         s->blocks < MANY_BLOCKS) // in no time, hot by the flow, unknown
         return STATUS_OK;
-    // A slow bath lets both wander together.
     const double positions = s->temperature_configurational,
                  of_positions = s->temperature_configurational_error;
     const double wanted = moves ? s->temperature : setup->temperature;
     const double error = moves ? hypot(of_positions, s->temperature_error) : of_positions;
-    if (!is_off(positions, certain * error, wanted))
-        return STATUS_OK;
+    if (!shows_forces(setup) || !knows_positions(s, moves) ||
+        !is_off(positions, certain * error, wanted))
+        return assess_bath(s, setup, certain);
     const double kinetic_off = moves ? fabs(s->temperature / setup->temperature - 1) : 0;
     const bool kinetic = simulation_holds_temperature(setup) &&
                          kinetic_off > fabs(positions / setup->temperature - 1);

@@ -96,7 +96,8 @@ enum status mf_thermodynamics_assess_fit(const struct thermodynamics_summary *su
 
 /// Whether positions and velocities tell one temperature, within 2.5 % and five standard errors of
 /// fifty blocks: a time step that is long parts them, a bath that is slow does not; for a warning
-/// of a simulation. Without velocities the temperature of the setup stands for theirs. Not of Monte
+/// of a simulation; and whether a bath holds that of the setup, as nearly. Without velocities the
+/// temperature of the setup stands for theirs. Not of Monte
 /// Carlo, nor where a flow may be driven. Fails: UNSTABLE. Tested: test_thermodynamics,
 /// cli/test_simulate_dynamics.
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *summary,

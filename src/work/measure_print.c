@@ -174,12 +174,13 @@ static bool joins_any_beads(const struct molecules *molecules, const struct bond
     return any;
 }
 
-/// Bonds that are hardly any, and those of two lengths with hardly any between.
+/// Bonds that are hardly any, and those of two lengths.
 static enum status print_doubtful_bonds(struct progress *progress,
                                         const struct measure_result *result) {
     static const char question[] = "are the beads of --molecules in the order of the trajectory?";
     const struct measured *const measured = result->measured;
     const struct molecules *const molecules = measured->molecules.molecules;
+    static const double many = 0.02;
     struct bonded_moments found[MOLECULES_MAX_GROUPS];
     char unit[UNITS_NAME_SIZE];
     if (molecules == NULL || measured->in_vacuum)
@@ -187,15 +188,21 @@ static enum status print_doubtful_bonds(struct progress *progress,
     const double factor = find_unit(result, "lambda", unit);
     const double edge = cbrt(mf_measured_mean(&measured->volume, NULL));
     for (int g = 0; g < molecules->groups[BONDED_BOND]; g++) {
-        double part[2];
+        struct measured_lengths lengths;
+        const char *const name = molecules->group[BONDED_BOND][g].name;
         TRY(mf_measured_moments(measured, BONDED_BOND, g, &found[g]));
-        TRY(mf_measured_parts(measured, BONDED_BOND, g, part));
-        if (isfinite(part[0]))
+        TRY(mf_measured_lengths(measured, g, &lengths));
+        if (lengths.beyond > many)
+            mf_progress_print(progress,
+                              "mesofit: warning: %.0f %% of the bonds \"%s\" are longer than %.3g "
+                              "%s, twice the longest mean: %s",
+                              100 * lengths.beyond, name, factor * lengths.end, unit, question);
+        else if (isfinite(lengths.part[0]))
             mf_progress_print(progress,
                               "mesofit: warning: bonds \"%s\" are either some %.3g or some %.3g %s "
-                              "long, and hardly any between: %s",
-                              molecules->group[BONDED_BOND][g].name, factor * part[0],
-                              factor * part[1], unit, question);
+                              "long: %s",
+                              name, factor * lengths.part[0], factor * lengths.part[1], unit,
+                              question);
     }
     if (joins_any_beads(molecules, found, edge))
         mf_progress_print(progress,

@@ -129,18 +129,12 @@ static void test_beads_that_move_within_their_molecules_have_no_diffusion(void *
         "\"motion\": {\"every\": 10, \"lags\": LAGS, \"origin_every\": 2},\n"
         "\"measure\": {\"equilibration\": 1000, \"samples\": 1000, \"every\": 10}}\n";
     static const char within[] =
-        "no D yet: beads still move within their molecules, the MSD begins";
-    double rows[64][8], soon;
+        "no D yet: beads still move within their molecules";
+    double soon;
     small_inputs_write(*state, "scene.json", chains, "LAGS", "12");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
     run_program_assert_code(&result, 0);
     assert_non_null(strstr(result.err, within));
-    assert_int_equal(read_rows("out/motion.tsv", rows, 64, 3), 13);
-    const double gyration =
-        results_number("out/summary.json", "molecule_sizes.seven.gyration_squared");
-    // Its R_g^2 is of a configuration of each window.
-    assert_close(strtod(strstr(result.err, "begins at ") + 10, NULL), rows[6][1] / gyration,
-                 0.05 * rows[6][1] / gyration);
     char line[160];
     snprintf(line, sizeof line, "%.*s", (int)strcspn(strstr(result.err, within), "\n"),
              strstr(result.err, within));

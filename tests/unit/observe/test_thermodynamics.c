@@ -251,8 +251,11 @@ static void test_judge_of_a_fit_sees_a_few_percent(void **state) {
     assert_fails(mf_thermodynamics_assess_step(&s, &fluid.setup), STATUS_UNSTABLE,
                  "configurational temperature is -4.17(53) % off");
     // A slow bath: both together.
-    s.temperature = 0.97;
+    s.temperature = 0.98;
     assert_ok(mf_thermodynamics_assess_step(&s, &fluid.setup));
+    s.temperature = 0.96;
+    assert_fails(mf_thermodynamics_assess_step(&s, &fluid.setup), STATUS_UNSTABLE,
+                 "0.96, not 1: friction hardly holds it");
     s.temperature = 1.007;
     s.laplacian_error = 0.3; // forces hardly act
     assert_ok(mf_thermodynamics_assess_step(&s, &fluid.setup));
