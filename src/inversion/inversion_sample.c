@@ -146,20 +146,14 @@ static bool may_be_last(const struct sampling *sampling) {
     return mf_inversion_may_end(sampling->inversion);
 }
 
-/// Whether the best potential agrees with all targets: what is far from them beside it has either
-/// been led astray or not settled, and only settled samples tell which.
-static bool best_agrees(const struct inversion *inversion) {
-    return has_kept(inversion) && inversion_section_agrees(&inversion->course.progress.best.worst);
-}
-
 /// Whether samples must settle before a step is made of them. Where sizes of molecules alone
 /// remember, while g(r), lengths and angles do not, they are no worse than their replicas' scatter
 /// says, and do for a step; not for the last one.
 static bool waits(const struct sampling *sampling) {
     const struct inversion_state *state = sampling->state;
     const struct inversion_unequilibrated *unequilibrated = &state->assessment.unequilibrated;
-    const bool far = mf_inversion_is_far_beyond_drift(state) && !best_agrees(sampling->inversion);
-    return unequilibrated->found && !far && (unequilibrated->beside_sizes || may_be_last(sampling));
+    return unequilibrated->found && !mf_inversion_is_far_beyond_drift(state) &&
+           (unequilibrated->beside_sizes || may_be_last(sampling));
 }
 
 /// Whether samples that have not settled have cost too much. A step may lead to where nothing
