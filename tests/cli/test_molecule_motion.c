@@ -128,8 +128,7 @@ static void test_beads_that_move_within_their_molecules_have_no_diffusion(void *
         "\"dynamics\": {\"integrator\": \"velocity-verlet\"}, \"molecule_sizes\": {},\n"
         "\"motion\": {\"every\": 10, \"lags\": LAGS, \"origin_every\": 2},\n"
         "\"measure\": {\"equilibration\": 1000, \"samples\": 1000, \"every\": 10}}\n";
-    static const char within[] =
-        "no D yet: beads still move within their molecules";
+    static const char within[] = "no D yet: beads still move within their molecules";
     double soon;
     small_inputs_write(*state, "scene.json", chains, "LAGS", "12");
     RUN_PROGRAM(&result, "simulate", "scene.json", "-o", "out");
