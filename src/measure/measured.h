@@ -91,6 +91,7 @@ enum status mf_measured_moments(const struct measured *measured, int order, int 
 /// mf_bonded_distribution_parts, else NaN; and which share of them is beyond all bins, that is
 /// twice the longest mean of a group in the first frame. Fails: NO_MEMORY.
 struct measured_lengths {
+    size_t bonds;
     double part[2], beyond, end; ///< end: of the bins
 };
 enum status mf_measured_lengths(const struct measured *measured, int group,

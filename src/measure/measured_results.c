@@ -21,8 +21,8 @@ enum status mf_measured_lengths(const struct measured *measured, int group,
                                 struct measured_lengths *lengths) {
     const void *const state = mf_measured_state(measured, mf_bonded_distribution_of(BONDED_BOND));
     const struct topology *const topology = &measured->molecules.molecules->topology;
-    const double all = (double)measured->frames *
-                       (double)mf_bonded_distribution_terms(topology, BONDED_BOND, group);
+    lengths->bonds = mf_bonded_distribution_terms(topology, BONDED_BOND, group);
+    const double all = (double)measured->frames * (double)lengths->bonds;
     struct bonded_bins bins;
     double inside = 0;
     OWNED double *counts = mf_bonded_distribution_counts(state, group, &bins);

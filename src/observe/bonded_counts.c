@@ -9,20 +9,23 @@
 
 const double mf_bonded_distribution_seen = 1e-3;
 
-/// The bin with the least p beside the lower of the peaks on either side, below which a twentieth
-/// of all lies at least, and above it as much; `bins->count` if none has a twentieth of the lower
-/// peak.
+/// The last bin of the longest stretch whose p is below a twentieth of the lower of the peaks on
+/// either side, with a twentieth of all below it and above it at least; `bins->count` if there is
+/// none, or the peaks are of few counts, between which bins are empty by chance.
 static size_t find_valley(const struct bonded_bins *bins, const double *p, double all) {
-    static const double deepest = 0.05, least = 0.05;
-    size_t valley = bins->count;
-    double left = 0, below = 0, depth = deepest;
+    static const double deep = 0.05, least = 0.05, few = 20;
+    size_t valley = bins->count, run = 0, longest = 0;
+    double left = 0, below = 0;
     for (size_t k = 0; k < bins->count; k++) {
         double right = 0;
         for (size_t n = k + 1; n < bins->count; n++)
             right = fmax(right, p[n]);
         const double lower = fmin(left, right);
-        if (below >= least * all && below <= (1 - least) * all && p[k] < depth * lower) {
-            depth = p[k] / lower;
+        const bool low = below >= least * all && below <= (1 - least) * all && lower >= few &&
+                         p[k] < deep * lower;
+        run = low ? run + 1 : 0;
+        if (run > longest) {
+            longest = run;
             valley = k;
         }
         left = fmax(left, p[k]);
@@ -31,9 +34,10 @@ static size_t find_valley(const struct bonded_bins *bins, const double *p, doubl
     return valley;
 }
 
-/// What lies beyond twice the median, if it is a twentieth of all or more: `bins->count` if not.
+/// What lies beyond twice the median, if it is a twentieth of all or more, and these are many:
+/// `bins->count` if not.
 static size_t find_tail(const struct bonded_bins *bins, const double *p, double all) {
-    static const double least = 0.05, farther = 2;
+    static const double least = 0.05, farther = 2, few = 400;
     double below = 0, beyond = 0, median = INFINITY;
     size_t tail = bins->count;
     for (size_t k = 0; k < bins->count; k++) {
@@ -45,10 +49,11 @@ static size_t find_tail(const struct bonded_bins *bins, const double *p, double 
             beyond += p[k];
         }
     }
-    return beyond >= least * all ? tail : bins->count;
+    return all >= few && beyond >= least * all ? tail : bins->count;
 }
 
 void mf_bonded_distribution_parts(const struct bonded_bins *bins, const double *p, double part[2]) {
+    static const double apart = 1.25;
     double all = 0, sum[2] = {0}, moment[2] = {0};
     for (size_t k = 0; k < bins->count; k++)
         all += p[k];
@@ -61,6 +66,8 @@ void mf_bonded_distribution_parts(const struct bonded_bins *bins, const double *
     }
     for (int side = 0; side < 2; side++)
         part[side] = valley < bins->count ? moment[side] / sum[side] : NAN;
+    if (!(part[1] > apart * part[0])) // the digits of a file, or one peak in two
+        part[0] = part[1] = NAN;
 }
 
 struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *bins,

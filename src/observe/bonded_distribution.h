@@ -63,8 +63,9 @@ struct bonded_moments mf_bonded_distribution_moments(const struct bonded_bins *b
                                                      const double *p);
 
 /// The means of two parts of a distribution of lengths with a deep valley between, less than a
-/// twentieth of the lower peak, or of which a twentieth or more is beyond twice the median; NaN: it
-/// is one. Tested: cli/test_measure_molecules.
+/// twentieth of the lower peak, or of which a twentieth or more is beyond twice the median, where
+/// counts are many and the means differ by a quarter; NaN: it is one. p are counts. Tested:
+/// cli/test_measure_molecules.
 void mf_bonded_distribution_parts(const struct bonded_bins *bins, const double *p, double part[2]);
 
 /// The deviation below which a group is as good as constrained, by `narrow` of its kind: a

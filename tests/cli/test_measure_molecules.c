@@ -380,21 +380,45 @@ static void test_bonds_of_beads_in_another_order_are_told(void **state) {
     }
 }
 
-/// Trimers along x with bonds of some 0.3 nm, and `astray` of each ten with an end 1.8 nm away.
+/// Ten frames of trimers along x with bonds of some 0.3 nm, and `astray` of each ten with an
+/// end 1.8 nm away.
 static void write_trimers(int astray) {
     FILE *stream = fopen("trimers.gro", "w");
     assert_non_null(stream);
     srand(5);
-    fprintf(stream, "trimers\n600\n");
-    for (int k = 0; k < 200; k++) {
-        const double at[3] = {0.1 + 3 * uniform(), 0.1 + 2 * uniform(), 0.1 + 3 * uniform()};
-        double x = at[0];
-        for (int bead = 0; bead < 3; bead++, x += 0.28 + 0.04 * uniform())
-            fprintf(stream, "%5dTRI      A%5d%8.3f%8.3f%8.3f\n", k + 1, 3 * k + bead + 1, x,
-                    at[1] + (bead == 2 && k % 10 < astray ? 1.8 : 0), at[2]);
+    for (int frame = 0; frame < 10; frame++) {
+        fprintf(stream, "trimers\n600\n");
+        for (int k = 0; k < 200; k++) {
+            const double at[3] = {0.1 + 3 * uniform(), 0.1 + 2 * uniform(), 0.1 + 3 * uniform()};
+            double x = at[0];
+            for (int bead = 0; bead < 3; bead++, x += 0.28 + 0.04 * uniform())
+                fprintf(stream, "%5dTRI      A%5d%8.3f%8.3f%8.3f\n", k + 1, 3 * k + bead + 1, x,
+                        at[1] + (bead == 2 && k % 10 < astray ? 1.8 : 0), at[2]);
+        }
+        fprintf(stream, "   4.0 4.0 4.0\n");
     }
+    fclose(stream);
+}
+
+/// Ten bonds in a frame leave bins empty by chance.
+static void test_few_bonds_are_not_of_two_lengths(void **state) {
+    static struct run_program_result result;
+    FILE *stream = fopen("few.gro", "w");
+    assert_non_null(stream);
+    srand(5);
+    fprintf(stream, "dimers\n20\n");
+    for (int k = 0; k < 20; k++)
+        fprintf(stream, "%5dDIM      A%5d%8.3f%8.3f%8.3f\n", k / 2 + 1, k + 1,
+                1 + k % 2 * (0.1 + 0.4 * uniform()), 0.2 * (k / 2), 1.0);
     fprintf(stream, "   4.0 4.0 4.0\n");
     fclose(stream);
+    small_inputs_write(*state, "few.json",
+                       "{\"molecules\": {\"dimer\": {\"beads\": [\"A\", \"A\"],\n"
+                       "\"bonds\": {\"AA\": [[1, 2]]}}}}\n",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "measure", "few.gro", "--molecules", "few.json", "-o", "target");
+    run_program_assert_code(&result, 0);
+    assert_null(strstr(result.err, "the beads of --molecules"));
 }
 
 /// A middle that is named as an end makes bonds of 0.3 and of 0.6 nm one group; of trimers that
@@ -413,8 +437,8 @@ static void test_bonds_of_two_lengths_are_told(void **state) {
                            "{\"molecules\": {\"three\": {\"beads\": [\"A\", \"A\", \"A\"],\n"
                            "\"bonds\": {\"AA\": BONDS}}}}\n",
                            "BONDS", cases[k].bonds);
-        RUN_PROGRAM(&result, "measure", "trimers.gro", "--molecules", "trimers.json", "-o",
-                    "target");
+        RUN_PROGRAM(&result, "measure", "trimers.gro", "--molecules", "trimers.json", "--static",
+                    "-o", "target");
         run_program_assert_code(&result, 0);
         if (cases[k].says)
             assert_contains(result.err, cases[k].says);
@@ -503,6 +527,7 @@ int main(void) {
         TEST(test_beads_in_another_order_than_their_atoms_are_told),
         TEST(test_bonds_of_beads_in_another_order_are_told),
         TEST(test_bonds_of_two_lengths_are_told),
+        TEST(test_few_bonds_are_not_of_two_lengths),
         TEST(test_molecules_that_are_not_there_are_refused),
         TEST(test_masses_are_those_of_the_scene),
     };
