@@ -167,15 +167,19 @@ void mf_inversion_find_factor(const struct inversion_state *state,
 /// beads forget slowly, these do not.
 static void find_inefficiencies(struct inversion_state *state, struct inversion_section *section) {
     const struct potential_grid *grid = &state->grid;
+    const struct replicas *replicas = &state->replicas;
+    const double every = (double)replicas->every;
+    const double run = replicas->counts.count / (double)replicas->count * every;
     double sum = 0;
     for (size_t block = 0, first = 0; block < grid->blocks; first += grid->known_of[block++]) {
         const size_t *bin = grid->known_bin + first, count = grid->known_of[block];
         if (first < section->known || first >= section->known + section->known_count)
             continue;
-        // Blocks of samples do not see what lasts longer than they do.
+        // Blocks of samples do not see what lasts longer than they do, nor short runs.
+        const double seen = fmax(mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, bin, count),
+                                 mf_replicas_inefficiency(replicas, 1, bin, count));
         const double found =
-            fmax(mf_replicas_inefficiency(&state->replicas, REPLICAS_BLOCKS, bin, count),
-                 mf_replicas_inefficiency(&state->replicas, 1, bin, count));
+            mf_inversion_memory_recall(&state->memory[block], every, run, seen);
         for (size_t a = first; a < first + count; a++)
             state->bin_inefficiency[a] = found;
         sum += found * (double)count;

@@ -224,6 +224,7 @@ static enum status allocate(struct inversion_state *state) {
     NEW_ARRAY(state->excess, known);
     NEW_ARRAY(state->variance, known);
     NEW_ARRAY(state->bin_inefficiency, known);
+    NEW_ARRAY(state->memory, state->grid.blocks);
     NEW_ARRAY(state->pool.excess, known);
     NEW_ARRAY(state->pool.variance, known);
     NEW_ARRAY(state->pool.phi, state->grid.points);
@@ -327,6 +328,7 @@ void mf_inversion_state_clear(struct inversion_state *state) {
     mf_inversion_basis_clear(&state->low_rank);
     mf_inversion_kirkwood_buff_clear(&state->kirkwood_buff);
     mf_inversion_response_clear(&state->response);
+    mf_memory_free(state->memory);
     mf_memory_free(state->target.shape);
     mf_memory_free(state->groups);
     double *arrays[] = {state->target.ideal, state->target.unit,   state->target.counts,
@@ -345,6 +347,7 @@ size_t mf_inversion_state_spans(struct inversion_state *state, struct memory_spa
     struct inversion_response *response = &state->response;
     size_t n = 0;
     span[n++] = (struct memory_span){&state->work, sizeof state->work};
+    span[n++] = (struct memory_span){state->memory, state->grid.blocks * sizeof *state->memory};
     span[n++] = (struct memory_span){&state->gradient, sizeof state->gradient};
     span[n++] = (struct memory_span){&pool->samples, sizeof pool->samples};
     span[n++] = (struct memory_span){pool->excess, bytes};

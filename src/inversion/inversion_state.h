@@ -11,6 +11,7 @@
 #include "inversion/imc_solve.h"
 #include "inversion/inversion_basis.h"
 #include "inversion/inversion_kirkwood_buff.h"
+#include "inversion/inversion_memory.h"
 #include "inversion/inversion_bulk.h"
 #include "inversion/inversion_response.h"
 #include "inversion/inversion_assessment.h"
@@ -77,6 +78,7 @@ struct inversion_state {
     double *excess, *variance;          ///< of S in the known bins, shape [known]
     double *bin_inefficiency;           ///< the same of the bin's pair type or group
     double inefficiency;                ///< the largest of all sections
+    struct inversion_memory *memory;    ///< of each pair type and group, shape [grid.blocks]
     struct inversion_response response; ///< of S to the potential, by C
     struct inversion_pool pool;
     struct inversion_bulk bulk;

@@ -189,6 +189,7 @@ static enum status announce(struct replicas *replicas, const struct replicas_pla
 enum status mf_replicas_run(struct replicas *replicas, const struct replicas_plan *plan,
                             int threads, const struct inverse_progress *progress,
                             const struct inverse_listener *listener) {
+    replicas->every = plan->every;
     TRY(announce(replicas, plan, plan->scatter, plan->equilibration, REPLICAS_BLOCKS));
     return run_all(replicas, plan, threads, progress, listener, run_one);
 }

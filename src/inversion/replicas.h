@@ -27,6 +27,7 @@ enum { REPLICAS_MIN_OF_SIDES = 8 };
 struct replicas {
     size_t bins, numbers, count; ///< numbers of a sample: bins, then sums and integrals
     bool begins[REPLICAS_SIDES]; ///< on both sides of it
+    int64_t every;               ///< sweeps between the present samples
     struct replica {
         struct sampler sampler;
         struct comoments counts; ///< of the samples
