@@ -20,6 +20,7 @@ struct made {
     double expected[BINS], sampled[BINS]; ///< by the truth, and by the potential
     double mean[BINS], comoment[BINS * BINS], unit[BINS], target[BINS], error[BINS];
     double excess[BINS], variance[BINS], inefficiency[BINS];
+    struct inversion_memory memory[2];
 };
 
 /// Bins from r = 0 on, so that the first ones have few pairs; those of a wrong potential are off by
@@ -47,7 +48,8 @@ static void make(struct made *made, gsl_rng *rng, double frames, double wrong) {
                                                  .error = made->error},
                                       .excess = made->excess,
                                       .variance = made->variance,
-                                      .bin_inefficiency = made->inefficiency};
+                                      .bin_inefficiency = made->inefficiency,
+                                      .memory = made->memory};
     for (size_t k = 0; k < BINS; k++) {
         made->known_bin[k] = k;
         made->seen[k] = true;

@@ -196,6 +196,7 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
     double comoment[THREE * THREE] = {0}, excess[THREE], variance[THREE], inefficiency[THREE];
     struct inverse_problem problem = {0};
     struct inversion_parameters parameters = {0};
+    struct inversion_memory memory = {0};
     struct inversion_state made = {
         .problem = &problem,
         .parameters = &parameters,
@@ -213,7 +214,8 @@ static void test_error_of_few_counts_is_that_of_those_expected(void **state) {
         .target = {.ideal = unit, .unit = unit, .counts = target, .error = error},
         .excess = excess,
         .variance = variance,
-        .bin_inefficiency = inefficiency};
+        .bin_inefficiency = inefficiency,
+        .memory = &memory};
     (void)state;
     made.replicas.counts =
         (struct comoments){.size = THREE, .count = 1e6, .mean = mean, .comoment = comoment};
