@@ -189,6 +189,18 @@ static enum status begin_observables(struct measured *measured, const struct box
     return STATUS_OK;
 }
 
+/// Of a simulation in two dimensions density, g(r) and D would be those of three.
+static enum status refuse_plane(const struct box_vectors *box,
+                                const struct trajectory_frame *first) {
+    if (!mf_frame_box_is_plane(box, first))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: frame %zu: all atoms lie in one plane: trajectories of two "
+                          "dimensions are not measured; g(r) that another program has of them is a "
+                          "target of a scene with \"dimensions\": 2",
+                          first->file, first->number);
+}
+
 static bool is_without_box(const struct trajectory_frame *frame) {
     bool periodic = false;
     for (int i = 0; i < 3; i++)
@@ -203,8 +215,10 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     *measured = (struct measured){.plan = *plan, .mapping = mapping, .volume.columns = 1};
     measured->in_vacuum =
         plan->molecules.molecules && plan->profile.bins == 0 && is_without_box(first);
-    if (!measured->in_vacuum)
+    if (!measured->in_vacuum) {
         CHECK(mf_frame_box_find(&box, first));
+        CHECK(refuse_plane(&box, first));
+    }
     if (mapping->beads < 2)
         CHECK(mf_status_fail(STATUS_BAD_INPUT,
                              "%s: there is a single bead, and a measurement is of pairs of them",

@@ -118,7 +118,7 @@ static enum status find_positions(const struct lammps_dump *dump,
     }
     return mf_frame_fail_line(frame, (const char *)frame->raw.data,
                               "there are no positions: columns x y z, xs ys zs, xu yu zu or xsu "
-                              "ysu zsu");
+                              "ysu zsu (two dimensions are not measured)");
 }
 
 static bool has_vector(const struct lammps_dump *dump, enum lammps_column first) {

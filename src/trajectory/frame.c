@@ -251,3 +251,11 @@ void mf_frame_box_spread(const struct box_vectors *box, const struct trajectory_
         spread[i] = mf_statistics_standard_error(&boxes) * sqrt(12 * (double)frame->atoms);
     }
 }
+
+bool mf_frame_box_is_plane(const struct box_vectors *box, const struct trajectory_frame *frame) {
+    enum { MIN_ATOMS = 4 };
+    static const double flat = 1e-6;
+    double spread[3];
+    mf_frame_box_spread(box, frame, spread);
+    return frame->atoms >= MIN_ATOMS && fmin(spread[0], fmin(spread[1], spread[2])) < flat;
+}

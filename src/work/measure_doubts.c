@@ -38,7 +38,8 @@ static void doubt_box(struct progress *progress, const struct trajectory_frame *
     static const double widest = 1.5, narrowest = 0.5;
     struct box_vectors box;
     double spread[3], most = 0, least = INFINITY;
-    if (frame->atoms < MIN_ATOMS || !frame->has_box || mf_frame_box_find(&box, frame) != STATUS_OK)
+    if (frame->atoms < MIN_ATOMS || !frame->has_box ||
+        mf_frame_box_find(&box, frame) != STATUS_OK || mf_frame_box_is_plane(&box, frame))
         return;
     mf_frame_box_spread(&box, frame, spread);
     for (int i = 0; i < 3; i++) {

@@ -61,6 +61,16 @@ static void test_boxes_and_places_that_are_none_are_refused(void **state) {
     run_program_assert_code(&result, 0);
 }
 
+static void test_atoms_of_a_plane_are_refused(void **state) {
+    static const char frame[] = "5\nLattice=\"3 0 0 0 3 0 0 0 1\" Time=0\n"
+                                "A 0 0 0.5\nA 1 1 0.5\nA 2 2 0.5\nA 1 2 0.5\nA 2 1 0.5\n";
+    temporary_folder_write(*state, "a.xyz", frame, strlen(frame));
+    RUN_PROGRAM(&result, "measure", "a.xyz", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "a.xyz: frame 0: all atoms lie in one plane");
+    assert_false(temporary_folder_exists("out/summary.json"));
+}
+
 static void test_times_that_are_none_are_refused(void **state) {
     static const char *const time[] = {"1e300", "-1e300"};
     static const char frames[] =
@@ -219,6 +229,7 @@ static void test_frames_of_one_time_are_used_when_they_are_independent(void **st
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_boxes_and_places_that_are_none_are_refused),
+        TEST(test_atoms_of_a_plane_are_refused),
         TEST(test_times_that_are_none_are_refused),
         TEST(test_lines_of_old_macs_are_refused),
         TEST(test_tables_without_a_number_are_not_written),
