@@ -33,8 +33,8 @@ stats "water.tsv" index 5 using 3 name "M" nooutput
 set arrow 1 from graph 0.36, first I_mean to graph 1, first I_mean nohead dashtype 2 linecolor rgb theirs
 set arrow 2 from graph 0.36, first M_mean to graph 1, first M_mean nohead linecolor rgb theirs
 set label 1 "noise of the measurement" at graph 0.98, first 0.0017 right textcolor rgb "#777777"
-set label 2 "IBI in VOTCA's test data" at graph 0.985, first 1.16 * I_mean right textcolor rgb theirs
-set label 3 "IMC in VOTCA's test data" at graph 0.985, first 1.16 * M_mean right textcolor rgb theirs
+set label 2 "VOTCA's own, IBI" at graph 0.985, first 1.16 * I_mean right textcolor rgb theirs
+set label 3 "VOTCA's own, IMC" at graph 0.985, first 1.16 * M_mean right textcolor rgb theirs
 plot "water.tsv" index 2 using 2:3 with linespoints linestyle 1 title "mesofit, IBI", \
     "" index 3 using 2:3 with linespoints linestyle 2 title "mesofit, IMC", \
     "" index 0 using 2:3 with linespoints linestyle 3 title "VOTCA with LAMMPS, IBI", \
