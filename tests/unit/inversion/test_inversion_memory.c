@@ -5,7 +5,8 @@
 
 #include <math.h>
 
-/// Samples of a series with the correlations ρ^t, h apart, that count as one independent: 1 + 2 Σ ρ^hk.
+/// Samples of a series with the correlations ρ^t, h apart, that count as one independent: 1 + 2 Σ
+/// ρ^hk.
 static double inefficiency(double rho, double h) {
     double sum = 1;
     for (int k = 1; k < 10000; k++)
