@@ -253,9 +253,13 @@ void mf_frame_box_spread(const struct box_vectors *box, const struct trajectory_
 }
 
 bool mf_frame_box_is_plane(const struct box_vectors *box, const struct trajectory_frame *frame) {
-    enum { MIN_ATOMS = 4 };
-    static const double flat = 1e-6;
+    static const double flat = 1e-6, full = 0.5;
     double spread[3];
+    int flats = 0, fulls = 0;
     mf_frame_box_spread(box, frame, spread);
-    return frame->atoms >= MIN_ATOMS && fmin(spread[0], fmin(spread[1], spread[2])) < flat;
+    for (int i = 0; i < 3; i++) {
+        flats += spread[i] < flat;
+        fulls += spread[i] > full;
+    }
+    return flats == 1 && fulls == 2;
 }
