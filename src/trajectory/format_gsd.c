@@ -43,6 +43,11 @@ static enum status check_frame(struct trajectory *trajectory, uint64_t frame, st
     return STATUS_OK;
 }
 
+/// Of a particle, by the bytes of all; of none it is 0.
+static uint32_t type_of(const struct bytes *types, size_t particle) {
+    return types->size ? binary_word(types->data + 4 * particle, false) : 0;
+}
+
 /// Particles keep their types, which beads are made by.
 static enum status check_types(struct trajectory *trajectory, uint64_t frame, struct bytes *raw) {
     struct gsd *const gsd = trajectory->state;
@@ -51,16 +56,13 @@ static enum status check_types(struct trajectory *trajectory, uint64_t frame, st
         return STATUS_OK;
     raw->size = 0;
     TRY(mf_gsd_take_if(trajectory, frame, TYPE, gsd->atoms, frame > 0 ? raw : &gsd->types, &there));
-    if (frame > 0 && there)
-        for (size_t k = 0; k < gsd->atoms; k++)
-            if (memcmp(raw->data + 4 * k,
-                       gsd->types.size ? gsd->types.data + 4 * k
-                                       : (const unsigned char *)"\0\0\0\0",
-                       4) != 0)
-                return mf_source_fail_byte(&trajectory->source,
-                                           "particle %zu is of another type than in the first "
-                                           "frame",
-                                           k + 1);
+    for (size_t k = 0; frame > 0 && there && k < gsd->atoms; k++)
+        if (type_of(raw, k) != type_of(&gsd->types, k))
+            return mf_source_fail_byte(&trajectory->source,
+                                       "particle %zu is of type %lu, in the first frame of %lu: "
+                                       "particles must keep their types",
+                                       k + 1, (unsigned long)type_of(raw, k),
+                                       (unsigned long)type_of(&gsd->types, k));
     return STATUS_OK;
 }
 
@@ -113,7 +115,7 @@ static enum status describe_types(struct trajectory *trajectory, struct bytes *r
     structure->has_names = true; // whose numbers are the file's own
     for (size_t k = 0; k < structure->atoms; k++) {
         struct structure_atom *const atom = &structure->atom[k];
-        const uint32_t type = gsd->types.size ? binary_word(gsd->types.data + 4 * k, false) : 0;
+        const uint32_t type = type_of(&gsd->types, k);
         if (type >= (types ? types : 1))
             return mf_source_fail_byte(&trajectory->source, "particle %zu is of type %lu of %llu",
                                        k + 1, (unsigned long)type, (unsigned long long)types);

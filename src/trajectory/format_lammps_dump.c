@@ -49,7 +49,15 @@ static bool integer_at(const struct lammps_dump *dump, const struct word *word,
     return dump->column[column] < 0 || mf_words_integer(&word[dump->column[column]], value);
 }
 
-/// The name of an atom is the label of its type, or else its element, or the number of its type.
+/// The column with the name of an atom: the label of its type, or else its element, or the number
+/// of its type; −1: there is none.
+static int name_column(const struct lammps_dump *dump) {
+    const int *const column = dump->column;
+    return column[LAMMPS_LABEL] >= 0     ? column[LAMMPS_LABEL]
+           : column[LAMMPS_ELEMENT] >= 0 ? column[LAMMPS_ELEMENT]
+                                         : column[LAMMPS_TYPE];
+}
+
 static enum status describe_atom(const struct lammps_dump *dump,
                                  const struct trajectory_frame *first, const char *line,
                                  const struct trajectory_scale *scale,
@@ -64,9 +72,7 @@ static enum status describe_atom(const struct lammps_dump *dump,
     if (column[LAMMPS_MASS] >= 0 && !mf_words_number(&word[column[LAMMPS_MASS]], &atom->mass))
         return mf_frame_fail_line(first, line, "expected a number for the mass");
     atom->mass *= scale->mass;
-    const int name = column[LAMMPS_LABEL] >= 0     ? column[LAMMPS_LABEL]
-                     : column[LAMMPS_ELEMENT] >= 0 ? column[LAMMPS_ELEMENT]
-                                                   : column[LAMMPS_TYPE];
+    const int name = name_column(dump);
     if (name >= 0 && !mf_words_copy(&word[name], atom->name, STRUCTURE_NAME))
         return mf_frame_fail_line(first, line, "a name of more than %d characters",
                                   STRUCTURE_NAME - 1);
@@ -158,21 +164,21 @@ static bool read_position(const struct lammps_dump *dump, const struct word *wor
     return true;
 }
 
-/// Without ids rows are atoms in the order of the first frame, which LAMMPS changes as it sorts
-/// them: where types tell, it is told.
-static enum status check_order(const struct trajectory *trajectory,
-                               const struct trajectory_frame *frame, const struct lammps_dump *dump,
-                               const struct word *word, const char *line, size_t row) {
-    const int64_t first = trajectory->structure.atom[row].type;
-    int64_t type = first;
-    if (!trajectory->structure.has_types ||
-        (integer_at(dump, word, LAMMPS_TYPE, &type) && type == first))
+/// Atoms keep their types, or else their names: also without ids, where LAMMPS changes the order of
+/// rows as it sorts atoms.
+static enum status check_type(const struct trajectory *trajectory,
+                              const struct trajectory_frame *frame, const struct lammps_dump *dump,
+                              const struct word *word, const char *line, size_t atom) {
+    const struct structure *const structure = &trajectory->structure;
+    const struct structure_atom *const first = &structure->atom[atom];
+    const bool numbers = structure->has_types;
+    const int column = numbers ? dump->column[LAMMPS_TYPE] : name_column(dump);
+    int64_t type;
+    if (column < 0 || !structure->has_names ||
+        (numbers ? mf_words_integer(&word[column], &type) && type == first->type
+                 : mf_words_same(&word[column], first->name)))
         return STATUS_OK;
-    return mf_frame_fail_line(
-        frame, line,
-        "an atom of another type than in this row of the first frame: without "
-        "ids atoms come in any order; dump the column id, too, or use "
-        "\"dump_modify sort id\"");
+    return mf_trajectory_fail_type(trajectory, frame, line, atom, &word[column]);
 }
 
 /// Where the atom stands among the structure's, each once.
@@ -181,7 +187,7 @@ static enum status find_atom(const struct trajectory *trajectory, struct traject
                              const char *line, size_t *atom) {
     int64_t id;
     if (!trajectory->structure.has_ids)
-        return check_order(trajectory, frame, dump, word, line, *atom);
+        return STATUS_OK;
     if (dump->column[LAMMPS_ID] < 0 || !mf_words_integer(&word[dump->column[LAMMPS_ID]], &id))
         return mf_frame_fail_line(frame, line, "expected an atom id");
     return mf_trajectory_find_atom(trajectory, frame, line, id, atom);
@@ -220,6 +226,7 @@ static enum status read_atoms(const struct trajectory *trajectory, struct trajec
         size_t atom = k;
         TRY(mf_lammps_dump_split(dump, frame, line, word));
         TRY(find_atom(trajectory, frame, dump, word, line, &atom));
+        TRY(check_type(trajectory, frame, dump, word, line, atom));
         double *const position = frame->position[atom];
         if (!read_position(dump, word, from, position))
             return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");

@@ -325,6 +325,9 @@ static enum status read_atom(const struct trajectory *trajectory, struct traject
             return mf_frame_fail_line(frame, line, "expected an atom id");
         TRY(mf_trajectory_find_atom(trajectory, frame, line, id, &atom));
     }
+    if (comment->column[XYZ_NAME] >= 0 && trajectory->structure.has_names &&
+        !mf_words_same(known[XYZ_NAME], trajectory->structure.atom[atom].name))
+        return mf_trajectory_fail_type(trajectory, frame, line, atom, known[XYZ_NAME]);
     if (!read_vector(known[XYZ_POSITION], trajectory->scale.length, frame->position[atom]))
         return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
     const bool momenta = comment->column[XYZ_VELOCITY] < 0;

@@ -320,6 +320,28 @@ enum status mf_trajectory_find_atom(const struct trajectory *trajectory,
     return STATUS_OK;
 }
 
+enum status mf_trajectory_fail_type(const struct trajectory *trajectory,
+                                    const struct trajectory_frame *frame, const char *line,
+                                    size_t atom, const struct word *type) {
+    const struct structure *const structure = &trajectory->structure;
+    const struct structure_atom *const first = &structure->atom[atom];
+    char before[STRUCTURE_NAME + 8];
+    if (structure->has_types)
+        snprintf(before, sizeof before, "%lld", (long long)first->type);
+    else
+        snprintf(before, sizeof before, "%s", first->name);
+    return mf_frame_fail_line(
+        frame, line,
+        "atom %lld is of type %.*s, in the first frame of %s: %swhere atoms swap types, leave out "
+        "ids, sort rows by type (in LAMMPS columns type x y z, \"dump_modify sort 1\") and use "
+        "--static",
+        structure->has_ids ? (long long)first->id : (long long)atom + 1, words_shown(type),
+        type->begin, before,
+        structure->has_ids ? ""
+                           : "without ids atoms come in any order; dump the column id, too, or use "
+                             "\"dump_modify sort id\"; ");
+}
+
 enum status mf_trajectory_read_count(const struct trajectory *trajectory, const char *line,
                                      uint64_t *atoms) {
     const struct source *const source = &trajectory->source;

@@ -163,6 +163,12 @@ enum status mf_trajectory_find_atom(const struct trajectory *trajectory,
                                     struct trajectory_frame *frame, const char *line, int64_t id,
                                     size_t *atom) MUST_USE;
 
+/// For decode: an atom of the first frame is of another `type` in `line`, where beads are made by
+/// the first. BAD_INPUT with both types and what is to be done.
+enum status mf_trajectory_fail_type(const struct trajectory *trajectory,
+                                    const struct trajectory_frame *frame, const char *line,
+                                    size_t atom, const struct word *type) MUST_USE;
+
 /// For fetch: read the number of atoms from the line taken last, which must be that of the first
 /// frame.
 enum status mf_trajectory_read_count(const struct trajectory *trajectory, const char *line,

@@ -337,7 +337,7 @@ static void test_gsd_is_refused_when_it_cannot_be_what_it_says(void **state) {
     for (int number = 0; number < 3; number++)
         next(true);
     assert_fails(mf_trajectory_next(&trajectory, &frame, &more), STATUS_BAD_INPUT,
-                 "particle 3 is of another type than in the first frame");
+                 "particle 3 is of type 1, in the first frame of 0");
     close_all();
 }
 

@@ -367,6 +367,30 @@ static void assert_refused(void **state, const char *text, const char *part) {
         mf_trajectory_close(&trajectory);
 }
 
+/// Two frames of an atom of id 7 with these columns.
+static void assert_change_refused(void **state, const char *columns, const char *first,
+                                  const char *second, const char *part) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id %s x y z\n7 %s 1 2 3\n"
+             "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id %s x y z\n7 %s 1 2 3\n",
+             columns, first, columns, second);
+    assert_refused(state, text, part);
+}
+
+/// As by fix atom/swap.
+static void test_dump_is_refused_when_atoms_change_their_types(void **state) {
+    assert_change_refused(state, "type", "1", "2",
+                          "a.txt:8: frame 1: atom 7 is of type 2, in the first frame of 1: where "
+                          "atoms swap types, leave out ids, sort rows by type");
+    assert_change_refused(state, "type", "Na", "Cl",
+                          "atom 7 is of type Cl, in the first frame of Na: where");
+    assert_change_refused(state, "element", "Na", "Cl",
+                          "atom 7 is of type Cl, in the first frame of Na: where");
+    assert_change_refused(state, "type element", "1 C", "2 C",
+                          "atom 7 is of type 2, in the first frame of 1: where");
+}
+
 static void test_dump_is_refused_with_its_line(void **state) {
     char text[2048];
     snprintf(text, sizeof text, "%s%.*s", dump, (int)sizeof dump - 9, dump);
@@ -389,7 +413,8 @@ static void test_dump_is_refused_with_its_line(void **state) {
                                  "ITEM: ATOMS type x y z\n1 1 2 3\n2 4 5 6\n";
     snprintf(text, sizeof text, "%s%.*s2 1 2 3\n1 4 5 6\n", frames, (int)sizeof frames - 17,
              frames);
-    assert_refused(state, text, "a.txt:21: frame 1: an atom of another type than in this row of");
+    assert_refused(state, text,
+                   "a.txt:21: frame 1: atom 1 is of type 2, in the first frame of 1: without ids");
     assert_refused(state, "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id x y\n1 2 3\n", "no positions");
     assert_refused(state, "ITEM: ATOMS id x y z\n1 2 3 4\n",
                    "a.txt:1: frame 0: expected the number of atoms");
@@ -418,6 +443,7 @@ int main(void) {
         TEST(test_units_must_be_told_unless_the_file_does),
         cmocka_unit_test(test_units_are_those_of_the_manual),
         TEST(test_dump_has_forces_where_they_are_asked_for),
+        TEST(test_dump_is_refused_when_atoms_change_their_types),
         TEST(test_dump_is_refused_with_its_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

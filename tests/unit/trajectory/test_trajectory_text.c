@@ -297,6 +297,8 @@ static void test_text_is_refused_with_its_line(void **state) {
                    "a.xyz:6: frame 1: the file ends within this line");
     assert_refused(state, "a.xyz", "1\n\nO 1 2 3\n1\n\n", "a.xyz:5: frame 1: the file ends within");
     assert_refused(state, "a.xyz", "1\n\nO 1 nan 3\n", "a.xyz:3: frame 0: a coordinate");
+    assert_refused(state, "a.xyz", "1\n\nNa 1 2 3\n1\n\nCl 1 2 3\n",
+                   "a.xyz:6: frame 1: atom 1 is of type Cl, in the first frame of Na");
     assert_refused(state, "a.xyz", "1\nProperties=pos:R:2\n1 2\n",
                    "a.xyz:2: frame 0: expected name:kind:number in Properties");
     assert_refused(state, "a.xyz", "1\nLattice=\"1 2 3\"\nO 1 2 3\n", "nine numbers");
