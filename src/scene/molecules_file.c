@@ -127,22 +127,41 @@ enum status mf_molecules_file_masses(double mass[COMPOSITION_MAX_TYPES],
     return mf_json_close(document, STATUS_OK);
 }
 
+static bool have_same_ids(const struct structure *list, const struct structure *of) {
+    bool same = list->atoms == of->atoms;
+    for (size_t k = 0; k < of->atoms && same; k++)
+        same = list->atom[k].id == of->atom[k].id;
+    return same;
+}
+
+/// Atoms of the same ids are the same atoms, and of the same types.
+static enum status fail_type(const char *file, const struct structure_atom *listed,
+                             const struct structure_atom *atom, bool numbers) {
+    if (numbers)
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "%s: atom %lld is of type %lld, in the trajectory of %lld", file,
+                              (long long)atom->id, (long long)listed->type, (long long)atom->type);
+    return mf_status_fail(STATUS_BAD_INPUT, "%s: atom %lld is of type %s, in the trajectory of %s",
+                          file, (long long)atom->id, listed->name, atom->name);
+}
+
 /// Whether atoms of the trajectory are called as those of the listing, or are of its numbers of
 /// types, again and again; one without names must be listed from end to end.
-static bool is_listed(const struct structure *list, const struct structure *of) {
-    const bool numbers = list->names == STRUCTURE_TYPES && of->has_types;
+static enum status find_listed(const struct structure *list, const char *file,
+                               const struct structure *of, bool *listed) {
+    const bool numbers = (list->names == STRUCTURE_TYPES || list->has_types) && of->has_types;
     const bool names = list->has_names && of->has_names && (list->names == of->names || numbers);
     const bool ids = list->has_ids && of->has_ids && list->atoms == of->atoms;
-    if (list->atoms == 0 || of->atoms % list->atoms != 0 || (!names && list->atoms != of->atoms))
-        return false;
-    for (size_t k = 0; k < of->atoms; k++) {
+    *listed = list->atoms > 0 && of->atoms % list->atoms == 0 &&
+              (names || list->atoms == of->atoms) && (!ids || have_same_ids(list, of));
+    for (size_t k = 0; k < of->atoms && names && *listed; k++) {
         const struct structure_atom *const a = &list->atom[k % list->atoms], *const b =
                                                                                  &of->atom[k];
-        const bool alike = strcmp(a->name, b->name) == 0 || (numbers && a->type == b->type);
-        if ((names && !alike) || (ids && a->id != b->id))
-            return false;
+        *listed = strcmp(a->name, b->name) == 0 || (numbers && a->type == b->type);
+        if (ids && !*listed)
+            return fail_type(file, a, b, numbers);
     }
-    return true;
+    return STATUS_OK;
 }
 
 /// Molecules are what bonds join, or what the listing numbers.
@@ -198,12 +217,14 @@ enum status mf_molecules_listing_read(struct molecules_listing *listing, struct 
                                       const char *file, const char *units,
                                       const struct structure *of, bool mapped) {
     struct trajectory trajectory;
-    enum status status = STATUS_OK;
+    enum status status;
     *listing = (struct molecules_listing){.repeats = 0};
     if (!mf_molecules_file_lists(file))
         return STATUS_OK;
+    bool listed = false;
     TRY(mf_structure_topology_open(&trajectory, file, units));
-    if (is_listed(&trajectory.structure, of))
+    status = find_listed(&trajectory.structure, file, of, &listed);
+    if (status == STATUS_OK && listed)
         status = take(listing, &trajectory.structure, of, mapped);
     for (int k = 0; k < molecules->kinds && listing->repeats > 0; k++)
         molecules->kind[k].count *= (int64_t)listing->repeats;

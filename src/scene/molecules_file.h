@@ -39,7 +39,8 @@ struct molecules_listing {
 /// @param[in,out] molecules  each kind of it is there so often more
 /// @param[in] units  of a file that says none
 /// @param[in] mapped  atoms keep names and molecules: they become beads by a map
-/// Fails: IO, NO_MEMORY; BAD_INPUT for a damaged file. Tested: cli/test_measure_listings.
+/// Fails: IO, NO_MEMORY; BAD_INPUT for a damaged file, or for atoms of the same ids but not of the
+/// same types. Tested: cli/test_measure_listings.
 enum status mf_molecules_listing_read(struct molecules_listing *listing, struct topology *molecules,
                                       const char *file, const char *units,
                                       const struct structure *of, bool mapped) MUST_USE;

@@ -10,6 +10,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { CHAINS = 8, ATOMS = 3 * CHAINS, SIZE = 1 << 13 };
 static struct run_program_result result;
@@ -102,6 +103,27 @@ static void test_molecules_are_those_of_a_data_file_of_lammps(void **state) {
     // As a structure, all of whose atoms are of molecule 1, bonds tell molecules apart.
     MEASURE("chains.dump", "--file-units", "nano", "-s", "chains.data", "-o", "beads");
     assert_contains(result.err, "8 beads of 3 atoms");
+}
+
+/// Atoms of the same ids are the same atoms: a file of other types is of another system.
+static void test_a_data_file_of_other_types_is_refused(void **state) {
+    static const char *const files[] = {"chains.data", "data.labels"};
+    write_dump(*state);
+    write_data(*state, "chains.data", NULL);
+    write_data(*state, "data.labels", "Bb");
+    char *const dump = temporary_folder_read("chains.dump"), *const second = strstr(dump, "\n9 2 ");
+    second[3] = '1';
+    small_inputs_write(*state, "other.dump", dump, NULL, NULL);
+    free(dump);
+    for (int k = 0; k < 2; k++) {
+        char message[64];
+        snprintf(message, sizeof message, "%s: atom 9 is of type 2, in the trajectory of 1",
+                 files[k]);
+        RUN_PROGRAM(&result, "measure", "other.dump", "--static", "--file-units", "nano",
+                    "--molecules", files[k], "-o", "other");
+        run_program_assert_code(&result, 2);
+        assert_contains(result.err, message);
+    }
 }
 
 /// Three atoms of a template stand for all, one after the other.
@@ -209,6 +231,7 @@ static void test_topologies_say_their_own_errors(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_molecules_are_those_of_a_data_file_of_lammps),
+        TEST(test_a_data_file_of_other_types_is_refused),
         TEST(test_molecules_are_those_of_a_template_of_lammps),
         TEST(test_molecules_are_those_of_a_topology_whatever_its_laws),
         TEST(test_moleculetypes_that_nobody_has_are_not_looked_at),
