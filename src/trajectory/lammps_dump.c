@@ -170,5 +170,9 @@ enum status mf_lammps_dump_split(const struct lammps_dump *dump,
     for (size_t k = 0; k < dump->columns; k++)
         if (!mf_words_next(&rest, &word[k]))
             return mf_frame_fail_line(frame, line, "%zu columns, expected %zu", k, dump->columns);
+    const size_t more = mf_words_count(rest);
+    if (more > 0)
+        return mf_frame_fail_line(frame, line, "%zu columns, expected %zu", dump->columns + more,
+                                  dump->columns);
     return STATUS_OK;
 }

@@ -47,7 +47,7 @@ enum status mf_lammps_dump_read(struct lammps_dump *dump,
                                 const struct trajectory_frame *frame) MUST_USE;
 
 /// Split the line of an atom; word[n] is column n. Fails: BAD_INPUT with the line if it has too
-/// few.
+/// few or too many.
 enum status mf_lammps_dump_split(const struct lammps_dump *dump,
                                  const struct trajectory_frame *frame, const char *line,
                                  struct word word[LAMMPS_MAX_COLUMNS]) MUST_USE;

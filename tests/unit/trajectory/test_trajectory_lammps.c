@@ -403,6 +403,8 @@ static void test_dump_is_refused_with_its_line(void **state) {
     assert_refused(state, text, "a.txt:22: frame 1: a coordinate is not a finite number");
     snprintf(text, sizeof text, "%s%.*s1 4 5\n", dump, (int)sizeof dump - 9, dump);
     assert_refused(state, text, "a.txt:22: frame 1: 3 columns, expected 4");
+    snprintf(text, sizeof text, "%s%.*s1 4 5 6 7\n", dump, (int)sizeof dump - 9, dump);
+    assert_refused(state, text, "a.txt:22: frame 1: 5 columns, expected 4");
     snprintf(text, sizeof text, "%.*s2 4 5 6\n", (int)sizeof dump - 9, dump);
     assert_refused(state, text, "two atoms have the id 2");
     snprintf(text, sizeof text, "%sITEM: TIMESTEP\n8\nITEM: NUMBER OF ATOMS\n3\n", dump);
