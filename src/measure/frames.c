@@ -68,7 +68,9 @@ static enum status open_file(struct frames *frames) {
 static enum status close_file(struct frames *frames) {
     const struct frames_source *source = &frames->source[frames->at];
     if (source->doubled > 0)
-        TRY(note(frames, "%s: %zu frames of times that had been were left out",
+        TRY(note(frames,
+                 "mesofit: warning: %s: %zu frames of times that had been were left out, as those "
+                 "that a restarted run repeats; --static uses frames of any times",
                  frames->plan.file[frames->at], source->doubled));
     mf_trajectory_close(&frames->trajectory);
     frames->open = false;
