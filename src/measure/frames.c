@@ -57,6 +57,8 @@ static enum status open_file(struct frames *frames) {
             file));
     TRY(mf_trajectory_open(&frames->trajectory, file, &frames->plan.options));
     frames->open = true;
+    frames->unsorted = frames->unsorted || (frames->trajectory.format->unsorted &&
+                                            !frames->trajectory.structure.has_ids);
     if (frames->at == 0 && frames->trajectory.note[0])
         TRY(note(frames, "%s", frames->trajectory.note));
     if (frames->structure == NULL)

@@ -45,6 +45,7 @@ struct frames {
     struct trajectory_frame *frame; ///< shape [slots]: a batch, those to be used first
     struct sample_series time;      ///< of all frames in order, so far
     double earliest, latest;        ///< of all frames that were seen, used or not [ps]; NAN: none
+    bool unsorted;                  ///< rows may be other atoms in each frame
     bool goes_on;                   ///< beyond `latest`: what is after the end is not looked at
     size_t used, skipped;
     struct bytes notes; ///< lines for a person: what was left out and why; a text

@@ -319,6 +319,7 @@ const struct trajectory_format mf_format_lammps_dump = {
         "LAMMPS, dump in text, atom or custom: any columns, x xs xu xsu, ix, vx, fx, id type mol "
         "element typelabel mass",
     .unit_source = TRAJECTORY_UNITS_GIVEN,
+    .unsorted = true,
     .recognise = recognise,
     .fetch = fetch,
     .describe = describe,

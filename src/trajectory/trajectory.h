@@ -46,6 +46,7 @@ struct trajectory_format {
     const char *const *extensions; ///< without the point, NULL-terminated
     const char *summary;           ///< what is read of it, and whose format it is: one line
     enum trajectory_unit_source unit_source; ///< whose units it is in
+    bool unsorted;     ///< atoms come in any order, another in each frame, where no ids tell them
     size_t state_size; ///< of what it keeps from frame to frame, zeroed at first
     /// Whether the first bytes of a file look like this format.
     bool (*recognise)(const unsigned char *begin, size_t size);

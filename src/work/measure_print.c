@@ -107,6 +107,11 @@ static void print_motion(struct progress *progress, const struct measure_result 
                                                        : "frames have no times (--file-time-step)");
     if (!motion->begun)
         return;
+    if (result->frames->unsorted)
+        mf_progress_print(progress,
+                          "mesofit: warning: no ids tell atoms apart: MSD, D, escape times and "
+                          "VACF take each row for one atom, and LAMMPS changes their order; dump "
+                          "the column id, too, or use \"dump_modify sort id\"");
     if (mf_motion_blocks(&motion->motion) == 0)
         mf_progress_print(progress,
                           "mesofit: warning: no motion, no escape times: %zu frames are no window "

@@ -7,6 +7,7 @@
 #include "shared/testing.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { ATOMS = 60, FRAMES = 30, TEXT = 1 << 20 };
@@ -115,6 +116,24 @@ static void test_what_the_first_frame_shows_is_told_once(void **state) {
 }
 
 /// A temperature takes no times.
+/// Rows of LAMMPS are other atoms in each frame, unless ids tell which.
+static void test_motion_of_rows_that_may_be_any_atoms(void **state) {
+    static const char words[] = "mesofit: warning: no ids tell atoms apart: MSD, D, escape times "
+                                "and VACF take each row for one atom";
+    write_argon(*state);
+    MEASURE("--file-units", "real", "--file-time-step", "0.01", "--quiet");
+    assert_without(words);
+    char *const text = temporary_folder_read("a.dump");
+    for (char *at = text; (at = strstr(at, "ATOMS id "));)
+        memcpy(at, "ATOMS no ", 9);
+    temporary_folder_write(*state, "a.dump", text, strlen(text));
+    free(text);
+    MEASURE("--file-units", "real", "--file-time-step", "0.01", "--quiet");
+    assert_contains(result.err, words);
+    MEASURE("--file-units", "real", "--file-time-step", "0.01", "--quiet", "--static");
+    assert_without(words);
+}
+
 static void test_velocities_without_times(void **state) {
     write_argon(*state);
     MEASURE("--file-units", "real", "--static", "--temperature", "400");
@@ -196,6 +215,7 @@ int main(void) {
                                        TEST(test_units_that_cannot_be),
                                        TEST(test_boxes_that_are_not_those_of_the_atoms),
                                        TEST(test_what_the_first_frame_shows_is_told_once),
+                                       TEST(test_motion_of_rows_that_may_be_any_atoms),
                                        TEST(test_velocities_without_times),
                                        TEST(test_a_temperature_that_nothing_tells),
                                        TEST(test_types_by_their_numbers),
