@@ -47,6 +47,27 @@ static size_t read_some(struct source *source, unsigned char *to, size_t count) 
                           : fread(to, 1, count, source->stream);
 }
 
+/// Have something in the buffer, unless the file has ended.
+static enum status fill(struct source *source) {
+    if (source->begin < source->end)
+        return STATUS_OK;
+    source->begin = 0;
+    source->end = read_some(source, source->buffer, BUFFER_SIZE);
+    return source->end > 0 ? STATUS_OK : check_stream(source);
+}
+
+/// What Windows puts before UTF-8 is no part of a text, and no binary format begins so.
+static enum status skip_byte_order_mark(struct source *source) {
+    static const char mark[] = "\xEF\xBB\xBF";
+    enum { SIZE = sizeof mark - 1 };
+    TRY(fill(source));
+    if (source->end < SIZE || memcmp(source->buffer, mark, SIZE) != 0)
+        return STATUS_OK;
+    source->begin = SIZE;
+    source->byte = SIZE;
+    return STATUS_OK;
+}
+
 /// The first bytes tell whether the file is compressed.
 static enum status begin(struct source *source) {
     source->end = read_some(source, source->buffer, BUFFER_SIZE);
@@ -54,7 +75,7 @@ static enum status begin(struct source *source) {
     TRY(mf_unpack_begin(&source->unpack, source->file, source->buffer, source->end));
     if (source->unpack)
         source->end = 0;
-    return STATUS_OK;
+    return skip_byte_order_mark(source);
 }
 
 enum status mf_source_open(struct source *source, const char *file) {
@@ -78,15 +99,6 @@ void mf_source_close(struct source *source) {
     mf_unpack_end(source->unpack);
     mf_memory_free(source->buffer);
     *source = (struct source){0};
-}
-
-/// Have something in the buffer, unless the file has ended.
-static enum status fill(struct source *source) {
-    if (source->begin < source->end)
-        return STATUS_OK;
-    source->begin = 0;
-    source->end = read_some(source, source->buffer, BUFFER_SIZE);
-    return source->end > 0 ? STATUS_OK : check_stream(source);
 }
 
 uint64_t mf_source_done(const struct source *source) {

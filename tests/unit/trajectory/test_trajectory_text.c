@@ -117,6 +117,17 @@ static void test_xyz_is_in_angstrom_when_nothing_is_told(void **state) {
     close_all();
 }
 
+static void test_byte_order_mark_is_no_part_of_a_text(void **state) {
+    open_text(state, "a.xyz",
+              "\xEF\xBB\xBF"
+              "1\n\nAr 1 2 3\n",
+              NULL);
+    next(true);
+    assert_vector(frame.position[0], 0.1, 0.2, 0.3);
+    next(false);
+    close_all();
+}
+
 static void test_extended_xyz_has_box_velocities_and_columns(void **state) {
     open_text(state, "a.xyz",
               "2\nLattice=\"10 0 0 1 9 0 -2 3 8\" "
@@ -328,6 +339,7 @@ int main(void) {
         TEST(test_gro_ends_with_its_box),
         TEST(test_gro_has_a_box_without_blanks),
         TEST(test_xyz_is_in_angstrom_when_nothing_is_told),
+        TEST(test_byte_order_mark_is_no_part_of_a_text),
         TEST(test_extended_xyz_has_box_velocities_and_columns),
         TEST(test_pdb_has_models_and_a_box_that_changes),
         TEST(test_pdb_residues_are_apart_when_their_numbers_are_not_decimal),
