@@ -308,7 +308,8 @@ static enum status read_positions(const struct trajectory *trajectory,
             good = good && mf_words_number(&place[d], &position[d]) &&
                    (!images || mf_words_number(&place[3 + d], &image[d]));
         if (!good)
-            return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
+            return mf_frame_fail_line(frame, line, "a coordinate is not a finite number%s",
+                                      mf_words_number_hint(line));
         for (int d = 0; d < 3; d++)
             position[d] = trajectory->scale.length *
                           (position[d] + image[0] * data->box[0][d] + image[1] * data->box[1][d] +

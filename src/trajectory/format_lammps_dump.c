@@ -229,7 +229,8 @@ static enum status read_atoms(const struct trajectory *trajectory, struct trajec
         TRY(check_type(trajectory, frame, dump, word, line, atom));
         double *const position = frame->position[atom];
         if (!read_position(dump, word, from, position))
-            return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
+            return mf_frame_fail_line(frame, line, "a coordinate is not a finite number%s",
+                                      mf_words_number_hint(line));
         scale_vector(position, trajectory->scale.length);
         TRY(read_more(trajectory, frame, dump, word, line, atom));
     }

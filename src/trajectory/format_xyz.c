@@ -329,7 +329,8 @@ static enum status read_atom(const struct trajectory *trajectory, struct traject
         !mf_words_same(known[XYZ_NAME], trajectory->structure.atom[atom].name))
         return mf_trajectory_fail_type(trajectory, frame, line, atom, known[XYZ_NAME]);
     if (!read_vector(known[XYZ_POSITION], trajectory->scale.length, frame->position[atom]))
-        return mf_frame_fail_line(frame, line, "a coordinate is not a finite number");
+        return mf_frame_fail_line(frame, line, "a coordinate is not a finite number%s",
+                                  mf_words_number_hint(line));
     const bool momenta = comment->column[XYZ_VELOCITY] < 0;
     const double speed =
         momenta ? ase_speed / trajectory->structure.atom[atom].mass : trajectory->scale.speed;

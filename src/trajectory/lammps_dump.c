@@ -64,7 +64,8 @@ static enum status read_box(struct lammps_dump *dump, const struct trajectory_fr
     for (int d = 0; d < 3; d++) {
         const char *rest = at = mf_frame_next_line(frame, at);
         if (rest == NULL || !mf_words_numbers(&rest, v[d], vectors ? 4 : tilted ? 3 : 2))
-            return mf_frame_fail_line(frame, at ? at : line, "expected the bounds of the box");
+            return mf_frame_fail_line(frame, at ? at : line, "expected the bounds of the box%s",
+                                      at ? mf_words_number_hint(at) : "");
     }
     if (tilted)
         set_tilted(dump, v);

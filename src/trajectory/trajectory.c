@@ -151,6 +151,16 @@ static enum status check_units(const struct trajectory *trajectory) {
         trajectory->file);
 }
 
+/// NAN is a mass that is not known, 0 that of a site without any.
+static enum status check_masses(const struct trajectory *trajectory) {
+    const struct structure *const structure = &trajectory->structure;
+    for (size_t k = 0; k < structure->atoms; k++)
+        if (structure->atom[k].mass < 0 || isinf(structure->atom[k].mass))
+            return mf_status_fail(STATUS_BAD_INPUT, "%s: the mass of atom %zu is %.6g u",
+                                  trajectory->file, k + 1, structure->atom[k].mass);
+    return STATUS_OK;
+}
+
 static enum status begin(struct trajectory *trajectory) {
     const struct trajectory_format *const format = trajectory->format;
     bool more = true;
@@ -164,6 +174,7 @@ static enum status begin(struct trajectory *trajectory) {
         return mf_status_fail(STATUS_BAD_INPUT, "%s: the file has no frame", trajectory->file);
     TRY(format->describe(trajectory, &trajectory->first));
     TRY(check_units(trajectory));
+    TRY(check_masses(trajectory));
     TRY(mf_structure_number_residues(&trajectory->structure));
     trajectory->waiting = true;
     return STATUS_OK;

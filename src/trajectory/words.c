@@ -87,6 +87,10 @@ bool mf_words_number(const struct word *word, double *value) {
     return digits > 0;
 }
 
+const char *mf_words_number_hint(const char *line) {
+    return strchr(line, ',') ? ": a decimal comma?" : "";
+}
+
 bool mf_words_integer(const struct word *word, int64_t *value) {
     const char *at = word->begin, *const end = at + word->length;
     const bool negative = at < end && *at == '-';

@@ -37,6 +37,9 @@ bool mf_words_alike(const struct word *word, const char *text);
 /// bit.
 bool mf_words_number(const struct word *word, double *value);
 
+/// What to ask a person whose line has no number where one is expected; "" if nothing is likely.
+const char *mf_words_number_hint(const char *line);
+
 /// Whether the word is a whole number that an int64_t can hold.
 bool mf_words_integer(const struct word *word, int64_t *value);
 

@@ -403,6 +403,15 @@ static void test_dump_is_refused_with_its_line(void **state) {
     assert_refused(state, text, "a.txt:22: frame 1: a coordinate is not a finite number");
     snprintf(text, sizeof text, "%s%.*s1 4 5\n", dump, (int)sizeof dump - 9, dump);
     assert_refused(state, text, "a.txt:22: frame 1: 3 columns, expected 4");
+    snprintf(text, sizeof text, "%s%.*s1 4 5,5 6\n", dump, (int)sizeof dump - 9, dump);
+    assert_refused(state, text,
+                   "a.txt:22: frame 1: a coordinate is not a finite number: a decimal");
+    assert_refused(state,
+                   "ITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS\n0 9,5\n0 9,5\n0 9,5\n"
+                   "ITEM: ATOMS id x y z\n1 2 3 4\n",
+                   "a.txt:4: frame 0: expected the bounds of the box: a decimal comma?");
+    assert_refused(state, "ITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id mass x y z\n1 -2 3 4 5\n",
+                   "a.txt: the mass of atom 1 is -2 u");
     snprintf(text, sizeof text, "%s%.*s1 4 5 6 7\n", dump, (int)sizeof dump - 9, dump);
     assert_refused(state, text, "a.txt:22: frame 1: 5 columns, expected 4");
     snprintf(text, sizeof text, "%.*s2 4 5 6\n", (int)sizeof dump - 9, dump);
