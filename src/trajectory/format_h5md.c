@@ -2,8 +2,9 @@
 //
 // H5MD 1.1 (P. de Buyl, P. H. Colberg and F. Höfling, Comput. Phys. Commun. 185, 1546 (2014);
 // https://h5md.nongnu.org): particles of one group, by the HDF5 library, frame by frame. Positions,
-// velocities, forces, images, ids and the box's edges may change in time; masses and species are
-// those of the first frame. Built if HDF5 is there: format_h5md_without.c stands for it otherwise.
+// velocities, forces, images, ids and the box's edges may change in time; masses are those of the
+// first frame, and so must species be. Built if HDF5 is there: format_h5md_without.c stands for it
+// otherwise.
 #include "base/memory.h"
 #include "base/status.h"
 #include "trajectory/h5md_file.h"
@@ -109,7 +110,7 @@ static void canary_end(struct h5md_canary *canary) {
 struct header {
     double step, time; ///< [ps]
     double box[3][3];  ///< [nm]; 0: none
-    bool has_velocities, has_images, has_forces, has_ids;
+    bool has_velocities, has_images, has_forces, has_species, has_ids;
 };
 
 static bool recognise(const unsigned char *begin, size_t size) {
@@ -208,6 +209,8 @@ static enum status fetch_numbers(struct trajectory *trajectory, struct trajector
     TRY(take_if(frame, &h5md->image, header.step, at, H5T_NATIVE_DOUBLE, &header.has_images));
     if (trajectory->forces)
         TRY(take_if(frame, &h5md->force, header.step, at, H5T_NATIVE_DOUBLE, &header.has_forces));
+    if (h5md->species.timed)
+        TRY(take_if(frame, &h5md->species, header.step, at, H5T_NATIVE_INT64, &header.has_species));
     TRY(take_if(frame, &h5md->id, header.step, at, H5T_NATIVE_INT64, &header.has_ids));
     if (h5md->id.there && !header.has_ids) // then it is unknown which particle is which
         return fail_of_step(&h5md->id, header.step, at, "");
@@ -332,6 +335,26 @@ static enum status find_atoms(const struct trajectory *trajectory, struct trajec
     return STATUS_OK;
 }
 
+/// Species that are written for each frame: beads are made by those of the first.
+static enum status check_species(const struct trajectory *trajectory,
+                                 const struct trajectory_frame *frame, const struct header *header,
+                                 const size_t *place) {
+    const size_t size = frame->atoms * sizeof(int64_t), blocks = header->has_ids ? 2 : 1;
+    const unsigned char *const from = frame->raw.data + frame->raw.size - blocks * size;
+    for (size_t k = 0; k < frame->atoms; k++) {
+        const int64_t first = trajectory->structure.atom[place ? place[k] : k].type;
+        int64_t species;
+        memcpy(&species, from + k * sizeof species, sizeof species);
+        if (species != first)
+            return mf_status_fail(STATUS_BAD_INPUT,
+                                  "%s: frame %zu: particle %zu is of species %lld, in the first "
+                                  "frame of %lld: particles must keep theirs",
+                                  frame->file, frame->number, k + 1, (long long)species,
+                                  (long long)first);
+    }
+    return STATUS_OK;
+}
+
 /// Add to vectors the numbers that stand at `*at`, in units of three vectors.
 static enum status add(const struct trajectory_frame *frame, size_t *at, const double unit[3][3],
                        const size_t *place, double (*array)[3]) {
@@ -390,6 +413,8 @@ static enum status decode(const struct trajectory *trajectory, struct trajectory
         TRY_ARRAY(place, frame->atoms);
         TRY(find_atoms(trajectory, frame, place));
     }
+    if (header.has_species)
+        TRY(check_species(trajectory, frame, &header, place));
     return decode_vectors(trajectory, frame, &header, place);
 }
 

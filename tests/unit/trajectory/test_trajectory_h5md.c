@@ -369,6 +369,27 @@ static void test_h5md_atoms_are_sorted_when_it_has_ids(void **state) {
     close_all();
 }
 
+/// Species may be written for each frame; two particles swap theirs in the last.
+static void test_h5md_is_refused_when_particles_change_their_species(void **state) {
+    int species[FRAMES][ATOMS];
+    bool more;
+    for (int t = 0; t < FRAMES; t++)
+        for (int k = 0; k < ATOMS; k++)
+            species[t][k] = k == (t < FRAMES - 1 ? 0 : 1) ? 8 : 1;
+    begin_file(state);
+    const hid_t group = begin_group("all");
+    write_positions(group, H5T_IEEE_F64LE, true, "nm");
+    write_element(group, "species", H5T_STD_I32LE, H5T_NATIVE_INT, 2, scalars, species, NULL);
+    H5Gclose(group);
+    end_file();
+    assert_ok(try(&nothing));
+    for (int t = 0; t < FRAMES - 1; t++)
+        next(true);
+    assert_fails(mf_trajectory_next(&trajectory, &frame, &more), STATUS_BAD_INPUT,
+                 "particle 1 is of species 1, in the first frame of 8");
+    close_all();
+}
+
 /// Without ids a frame's particles may stand in any order.
 static void test_h5md_is_refused_when_some_frames_have_no_ids(void **state) {
     const int id[1][ATOMS] = {{9, 7, 8}}, first = 10;
@@ -687,6 +708,7 @@ int main(void) {
         TEST(test_h5md_has_forces_where_they_are_asked_for),
         TEST(test_h5md_has_no_times_when_its_positions_are_fixed),
         TEST(test_h5md_atoms_are_sorted_when_it_has_ids),
+        TEST(test_h5md_is_refused_when_particles_change_their_species),
         TEST(test_h5md_is_refused_when_some_frames_have_no_ids),
         TEST(test_h5md_names_its_groups_when_there_are_several),
         TEST(test_h5md_is_refused_when_shapes_do_not_fit),
