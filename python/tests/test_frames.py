@@ -236,6 +236,7 @@ def test_fault_of_a_function_is_the_callers():
     (dict(positions=np.zeros((1, 2, 3)), types=["A\0", "B"]), "NUL"),
     (dict(positions=np.zeros((1, 2, 3)), types=["", "B"]), "has no name"),
     (dict(positions=np.full((1, 2, 3), np.nan), box=[3, 3, 3]), "is not finite"),
+    (dict(positions=np.zeros((1, 2, 3)), masses=[1, -1]), "mass of atom 2 is -1 u"),
     (dict(positions=np.zeros((1, 0, 3))), "types, or the number of particles"),
     (dict(positions=lambda number: None), "types, or the number of particles"),
     (dict(positions=lambda number: None, types="AB"), "no frame"),
