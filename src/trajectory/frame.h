@@ -101,6 +101,5 @@ void mf_frame_box_spread(const struct box_vectors *box, const struct trajectory_
                          double spread[3]);
 
 /// Whether all atoms have one place along a vector of the box, and fill it along the others, as in
-/// two dimensions. Tested:
-/// test_measure_limits.
+/// two dimensions. Tested: test_measure_limits.
 bool mf_frame_box_is_plane(const struct box_vectors *box, const struct trajectory_frame *frame);
