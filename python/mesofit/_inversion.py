@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ._errors import InputError, InterruptedWarning
-from ._inputs import PathLike
+from ._inputs import PathLike, array_of
 from ._library import Array
 from ._result import Result
 from ._result import open as open_result
@@ -21,6 +21,14 @@ from ._table import Table
 from ._work import fit_with
 
 _FRAMES = "frames.extxyz"
+
+
+def _finite(values: Any, what: str) -> Array:
+    array = array_of(values, what)
+    wrong = np.argwhere(~np.isfinite(array))
+    if len(wrong):
+        raise InputError(f"{what}: the value at {wrong[0].tolist()} is {array[tuple(wrong[0])]}")
+    return array
 
 
 class Piece:
@@ -62,7 +70,7 @@ class Piece:
         """Φ of each pair type, by names such as "A-B" ("" of beads of one type): columns r, phi, force."""
         tables = {}
         for path in sorted(self.folder.glob("potential*.tsv")):
-            heading = path.open().readline().strip("# \n").split("\t")
+            heading = path.read_text().partition("\n")[0].strip("# ").split("\t")
             names = tuple(word.split("[")[0] for word in heading)
             units = tuple(word.split("[")[1].rstrip("]") for word in heading)
             name = path.stem[len("potential_"):]
@@ -85,20 +93,21 @@ class Piece:
         Raises
         ------
         InputError
-            The array has another shape, fewer frames than were asked for, or another unit.
+            The array has another shape, fewer frames than were asked for, another unit, or values
+            that are masked or not finite.
         """
         box = np.array(self.asked["box"], dtype=float)
-        places = np.asarray(positions, dtype=float)
+        places = _finite(positions, "positions")
         wanted = self.asked["frames"]
         if places.ndim != 3 or places.shape[2] != len(box) or len(places) < wanted:
             raise InputError(f"positions: expected {wanted} frames of beads of {len(box)} coordinates, "
                              f"found the shape {places.shape}")
-        numbers = {name: [float(value) for value in np.ravel(values)[:wanted]]
+        numbers = {name: np.ravel(_finite(values, name))[:wanted].tolist()
                    for name, values in (("pressure", pressure), ("temperature", temperature),
                                         ("pair_energy", pair_energy)) if values is not None}
         if any(len(values) != wanted for values in numbers.values()):
             raise InputError(f"expected {wanted} numbers, one of each frame")
-        edges = np.broadcast_to(box if boxes is None else np.asarray(boxes, dtype=float),
+        edges = np.broadcast_to(box if boxes is None else _finite(boxes, "boxes"),
                                 (len(places), len(box)))
         names = self._names(places.shape[1])
         self._check_unit(places[0] / edges[0])

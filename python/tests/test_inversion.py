@@ -76,7 +76,30 @@ def test_wrong_samples_are_refused(tmp_path):
         piece.tell(np.zeros((piece.asked["frames"], 7, 3)))
     with pytest.raises(mesofit.InputError, match="one of each frame"):
         piece.tell(gas(piece), pressure=1.0)
+    samples = gas(piece)
+    with pytest.raises(mesofit.InputError, match="positions: values are masked"):
+        piece.tell(np.ma.masked_less(samples, 0.1))
+    with pytest.raises(mesofit.InputError, match="pressure: the value at \\[0\\] is nan"):
+        piece.tell(samples, pressure=np.full(len(samples), np.nan))
+    samples[1, 3, 2] = np.nan
+    with pytest.raises(mesofit.InputError, match="positions: the value at \\[1, 3, 2\\] is nan"):
+        piece.tell(samples)
     assert not piece.told
+
+
+def test_a_broken_piece_is_asked_for_again(tmp_path):
+    inversion = mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out")
+    tell_all(inversion)
+    frames = tmp_path / "out/engine/0001/02/frames.extxyz"
+    frames.write_text("A nan".join(frames.read_text().rsplit("A ", 1)))
+    with pytest.raises(mesofit.InputError, match="0001/02/frames.extxyz"):
+        inversion.go_on()
+    for again in (inversion,
+                  mesofit.Inversion(run_file(tmp_path), folder=tmp_path / "out", resume=True)):
+        assert not again.ended and [piece.folder for piece in again.pieces] == [frames.parent]
+    tell_all(again)
+    again.go_on()
+    assert [piece.asked["piece"] for piece in again.pieces] == [2, 2]
 
 
 def test_positions_in_another_unit_are_noticed(tmp_path):

@@ -154,6 +154,15 @@ enum status mf_engine_wait(struct engine_run *run, const char *folder) {
     return written ? STATUS_OK : mf_status_fail(STATUS_IO, "%s: cannot be written", path);
 }
 
+enum status mf_engine_refuse(struct engine_run *run, const char *folder, enum status status) {
+    if (!run->later)
+        return status;
+    if (status == STATUS_BAD_INPUT) // else they would be read again
+        mf_engine_folder_put_aside(folder, run->tongue->frames(run));
+    (void)mf_engine_wait(run, folder);
+    return status;
+}
+
 /// Of who runs the pieces elsewhere: what is there already stays.
 static enum status announce(void *context, const struct engine_piece *piece) {
     struct engine_run *run = context;
@@ -216,9 +225,8 @@ static enum status begin(void *context, const struct engine_piece *asked, void *
     }
     const enum status status =
         mf_engine_frames_open(run, piece, folder, (struct engine_frames **)frames);
-    if (status != STATUS_OK && run->later)
-        (void)mf_engine_wait(run, folder);
-    TRY(status);
+    if (status != STATUS_OK)
+        return mf_engine_refuse(run, folder, status);
     if (run->later || piece->number <= keep)
         return STATUS_OK;
     mf_engine_folder(run, piece->replica, piece->number - keep, old);

@@ -120,8 +120,6 @@ static enum status open_trajectory(const struct engine_run *run, struct engine_f
 
 /// Fewer frames than were asked for are a fault; what comes after them is left.
 static enum status fail_short(const struct engine_frames *frames) {
-    if (frames->run->later) // until they are whole
-        TRY(mf_engine_wait(frames->run, frames->folder));
     return mf_status_fail(
         STATUS_BAD_INPUT, "%s: it ends after %llu of the %llu frames that were asked for",
         frames->file, (unsigned long long)frames->taken, (unsigned long long)frames->wanted);
@@ -298,8 +296,6 @@ static enum status check_units(const struct engine_frames *frames,
     const bool small = farthest < least, large = frames->fresh && narrowest > most;
     if (frames->beads < 2 || !(small || large))
         return STATUS_OK;
-    if (frames->run->later)
-        TRY(mf_engine_wait(frames->run, frames->folder));
     return mf_status_fail(
         STATUS_BAD_INPUT,
         "%s: frame %zu: the beads are spread over %.2g of the box along each axis: "
@@ -343,9 +339,8 @@ static enum status find_sample(struct engine_frames *frames, struct engine_sampl
     return STATUS_OK;
 }
 
-enum status mf_engine_frames_next(void *memory, double *const position[3],
-                                  struct engine_sample *sample) {
-    struct engine_frames *frames = memory;
+static enum status next(struct engine_frames *frames, double *const position[3],
+                        struct engine_sample *sample) {
     struct trajectory_frame *frame = &frames->frame;
     const size_t reads = frames->taken == 0 ? frames->skip + 1 : 1;
     for (size_t k = 0; k < reads; k++) {
@@ -371,4 +366,12 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
         }
     }
     return STATUS_OK;
+}
+
+enum status mf_engine_frames_next(void *memory, double *const position[3],
+                                  struct engine_sample *sample) {
+    struct engine_frames *frames = memory;
+    const enum status status = next(frames, position, sample);
+    return status == STATUS_OK ? STATUS_OK
+                               : mf_engine_refuse(frames->run, frames->folder, status);
 }
