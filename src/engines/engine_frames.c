@@ -372,6 +372,5 @@ enum status mf_engine_frames_next(void *memory, double *const position[3],
                                   struct engine_sample *sample) {
     struct engine_frames *frames = memory;
     const enum status status = next(frames, position, sample);
-    return status == STATUS_OK ? STATUS_OK
-                               : mf_engine_refuse(frames->run, frames->folder, status);
+    return status == STATUS_OK ? STATUS_OK : mf_engine_refuse(frames->run, frames->folder, status);
 }

@@ -2,8 +2,9 @@
 //
 // LAMMPS: pair_style table linear reads the rows as they are if its N is that of the file and the
 // rows are RSQ. Friction by dpd/tstat and dpd/ext/tstat, or by mesofit/table (share/lammps).
-#include "export/export_lammps_molecules.h"
 #include "export/export_checks.h"
+#include "export/export_lammps_molecules.h"
+#include "export/export_lammps_place.h"
 #include "report/program.h"
 
 #include <ctype.h>
@@ -278,29 +279,6 @@ void mf_export_lammps_print_system(const struct export_job *job, FILE *stream) {
     fprintf(stream, "\n");
 }
 
-/// LAMMPS has no quotes around these, and puts others in the place of what is not ASCII.
-static bool is_quotable(const char *path) {
-    for (const char *at = path; *at; at++)
-        if (strchr("'\"$\n\r", *at) || (unsigned char)*at >= 0x80)
-            return false;
-    return true;
-}
-
-/// LAMMPS looks for files where it was started: in this folder, above it as it was written, or
-/// anywhere else as long as it is where it was.
-static void print_place(const struct export_job *job, FILE *stream) {
-    static const char elsewhere[] = "if \"$(is_file(data.mesofit)) == 0\" then";
-    OWNED char *whole = realpath(job->folder, NULL);
-    if (is_quotable(job->folder))
-        fprintf(stream, "%s 'shell cd \"%s\"'\n", elsewhere, job->folder);
-    if (whole && is_quotable(whole) && strcmp(whole, job->folder) != 0)
-        fprintf(stream, "%s 'shell cd \"%s\"'\n", elsewhere, whole);
-    fprintf(stream,
-            "%s \"print 'data.mesofit is not found: start LAMMPS in the folder of this input'\" "
-            "\"quit 1\"\n\n",
-            elsewhere);
-}
-
 static void print_input(const struct export_job *job, FILE *stream) {
     static const double steps_of_barostat = 1000;
     const struct export_model *model = job->model;
@@ -317,9 +295,10 @@ static void print_input(const struct export_job *job, FILE *stream) {
             dpd_runs(job) ? "dpd" : "langevin");
     mf_export_dynamics_print(job, "# ", stream);
     fprintf(stream, "\n");
-    print_place(job, stream);
+    mf_export_lammps_print_place(job->folder, stream);
     mf_export_lammps_print_system(job, stream);
     print_thermostat(job, stream);
+    mf_export_lammps_print_return(job->folder, stream);
     fprintf(stream,
             "\nif \"$(is_defined(variable,pressure)) == 1\" then &\n  \"fix move all nph iso "
             "${pressure} ${pressure} %.9g\" &\nelse \"fix move all nve\"\n%stimestep %.9g\n"

@@ -443,7 +443,7 @@ static void test_lammps_runs_what_was_written(void **state) {
     assert_int_equal(system("lmp -in lammps/in.mesofit -var steps 4000 -var equilibration 500 "
                             "-log none >lmp.out 2>&1"),
                      0);
-    FILE *ours = open_text("out/rdf.tsv"), *theirs = open_text("lammps/rdf.dat");
+    FILE *ours = open_text("out/rdf.tsv"), *theirs = open_text("rdf.dat");
     char line[512], other[512];
     double squares = 0;
     int rows = 0;
