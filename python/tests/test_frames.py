@@ -212,6 +212,23 @@ def test_ideal_gas_of_two_types_in_a_sheared_box_is_flat():
     assert np.allclose(same["rdf_A-B"]["g"], table["g"], rtol=1e-3)
 
 
+@pytest.mark.parametrize("masses, reason", [
+    (None, "masses of beads are not known, structure gives them: target.json has motion compared"),
+    ([1, 2], "masses of beads differ"), ([2, 2], None)])
+def test_motion_of_masses_that_may_differ_is_not_fitted(masses, reason, tmp_path, caplog):
+    caplog.set_level("INFO", "mesofit")
+    random = np.random.default_rng(2)
+    steps = random.normal(scale=0.02, size=(60, 200, 3)).cumsum(axis=0)
+    frames = mesofit.Frames(3 * random.random((200, 3)) + steps, [3, 3, 3], types=["A", "B"] * 100,
+                            times=np.arange(60) * 1.0, masses=masses and masses * 100)
+    mesofit.measure(frames, folder=tmp_path / "out", window=20, temperature=300)
+    target = json.loads((tmp_path / "out/target.json").read_text())["target"]
+    lines = " ".join(record.getMessage() for record in caplog.records)
+    assert (target["msd"].get("fitted") == "no") == (reason is not None)
+    assert ("then omega" in lines) == (reason is None)
+    assert reason is None or reason in lines
+
+
 def test_fault_of_a_function_is_the_callers():
     def get(number):
         if number == 1:

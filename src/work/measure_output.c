@@ -69,13 +69,13 @@ double mf_measure_output_mass(const struct measure_result *result, int type) {
     return mean.mean;
 }
 
-bool mf_measure_output_masses_differ(const struct measure_result *result) {
+bool mf_measure_output_masses_may_differ(const struct measure_result *result) {
     const int types = result->measured->pairs.composition.types;
     bool differ = false;
     for (int type = 1; type < types; type++)
         differ = differ ||
-                 fabs(mf_measure_output_mass(result, type) / mf_measure_output_mass(result, 0) -
-                      1) > 1e-9;
+                 !(fabs(mf_measure_output_mass(result, type) / mf_measure_output_mass(result, 0) -
+                        1) <= 1e-9);
     return differ;
 }
 
@@ -262,7 +262,7 @@ static void write_rdf(const struct measure_result *result, struct json_writer *w
 /// Friction is found for single beads of one mass: motion of others is compared with, and not
 /// fitted.
 static void write_fitted(const struct measure_result *result, struct json_writer *writer) {
-    if (result->kinds || mf_measure_output_masses_differ(result))
+    if (result->kinds || mf_measure_output_masses_may_differ(result))
         mf_json_write_text(writer, "fitted", "no");
 }
 

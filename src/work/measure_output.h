@@ -21,8 +21,8 @@ struct measure_result {
     double seconds;
 };
 
-/// Whether types of beads have different masses.
-bool mf_measure_output_masses_differ(const struct measure_result *result);
+/// Whether types of beads have different masses, or masses that are not known.
+bool mf_measure_output_masses_may_differ(const struct measure_result *result);
 
 /// Whether there is nothing but molecules that do not see each other, of which there is no g(r): in
 /// no box, or a single one.

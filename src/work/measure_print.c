@@ -351,6 +351,20 @@ static void print_speeds(struct progress *progress, const struct measure_result 
                           kelvin);
 }
 
+/// Why motion is no target of the fit, where masses are the reason.
+static void print_masses(struct progress *progress, const struct measure_result *result) {
+    const struct measured *const measured = result->measured;
+    bool known = true;
+    if (!measured->motion.begun || !mf_measure_output_masses_may_differ(result))
+        return;
+    for (int type = 0; type < measured->pairs.composition.types; type++)
+        known = known && !isnan(mf_measure_output_mass(result, type));
+    mf_progress_print(progress,
+                      "masses of beads %s: target.json has motion compared with and not fitted, "
+                      "since friction is for one mass",
+                      known ? "differ" : "are not known, -s gives them");
+}
+
 /// What a person is to know.
 static void print_all(struct progress *progress, const struct measure_result *result) {
     const struct measured *const measured = result->measured;
@@ -371,9 +385,7 @@ static void print_all(struct progress *progress, const struct measure_result *re
     print_molecules(progress, result);
     if (!measured->in_vacuum)
         print_motion(progress, result);
-    if (measured->motion.begun && mf_measure_output_masses_differ(result))
-        mf_progress_print(progress, "masses of beads differ: target.json has motion compared "
-                                    "with and not fitted, since friction is for one mass");
+    print_masses(progress, result);
     print_speeds(progress, result);
     print_temperature(progress, result);
     print_heating(progress, result);
@@ -389,7 +401,7 @@ enum status mf_measure_print(struct progress *progress, const struct measure_res
 static void describe_fit(const struct measure_result *result, char *text, size_t size) {
     const bool alone = mf_measure_output_is_alone(result);
     const bool moves = mf_measure_tables_have_motion(result) && result->kinds == NULL &&
-                       !mf_measure_output_masses_differ(result);
+                       !mf_measure_output_masses_may_differ(result);
     snprintf(text, size, "%s%s%s", alone ? "" : "the potential of pairs",
              result->kinds == NULL ? ""
              : alone               ? "the potentials of the molecules"
