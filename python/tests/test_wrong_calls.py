@@ -2,6 +2,7 @@
 """Wrong calls: each raises, and none ends the interpreter."""
 
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -202,3 +203,15 @@ def test_objects_that_were_never_made_are_freed():
     for kind in (mesofit.Simulation, mesofit.Problem, mesofit.Optimiser):
         thing = kind.__new__(kind)
         del thing
+
+
+@pytest.mark.filterwarnings("ignore::mesofit.MesofitWarning")
+def test_the_number_of_particles_that_is_advised_is_taken(run_file):
+    method = {"name": "ibi", "replicas": 2, "samples": 10, "iterations": 1}
+    with pytest.raises(mesofit.InputError, match="method.particles: 60 make a box") as refused:
+        mesofit.fit(run_file, method={**method, "particles": 60})
+    least = int(re.search(r"(\d+) are the least", str(refused.value))[1])
+    with pytest.raises(mesofit.InputError, match=f"{least} are the least"):
+        mesofit.fit(run_file, method={**method, "particles": least - 1})
+    result = mesofit.fit(run_file, method={**method, "particles": least})
+    assert result.used["method"]["particles"] == least

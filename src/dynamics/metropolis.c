@@ -134,6 +134,7 @@ double mf_metropolis_skin(const struct box *box, double count) {
 /// Room for the particles, and a list that is not built yet.
 static enum status prepare(struct metropolis *metropolis, const struct box *box, size_t count,
                            const struct pair_law *law) {
+    static const double rounding = 1e-9;
     enum status status = STATUS_OK;
     const double cutoff = law->potential ? law->potential->cutoff : 0;
     *metropolis = (struct metropolis){.law = {.potential = law->potential,
@@ -145,7 +146,7 @@ static enum status prepare(struct metropolis *metropolis, const struct box *box,
     NEW_ARRAY(metropolis->order, count);
     CHECK(mf_neighbours_init(&metropolis->neighbours, NEIGHBOURS_FULL, box, count, cutoff,
                              mf_metropolis_skin(box, (double)count)));
-    if (metropolis->neighbours.skin < 0.05 * cutoff) {
+    if (mf_box_shortest(box) < metropolis_shortest_box(cutoff) * (1 - rounding)) {
         status = mf_status_fail(
             STATUS_BAD_INPUT,
             "the box is too small for Monte Carlo: its shortest edge %g" STATUS_LENGTH " must be "

@@ -36,6 +36,11 @@ static inline double metropolis_reach(const struct metropolis *metropolis) {
     return 0.49 * metropolis->neighbours.skin;
 }
 
+/// The shortest box in which particles meet one image of each other, also in the skin [λ].
+static inline double metropolis_shortest_box(double cutoff) {
+    return 2.1 * cutoff;
+}
+
 /// The skin that its list would have in a box without end [λ].
 double mf_metropolis_skin(const struct box *box, double count);
 

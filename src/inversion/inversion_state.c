@@ -2,6 +2,7 @@
 //
 // What a state is made of: its system, its memory.
 #include "inversion/inversion_state.h"
+#include "dynamics/metropolis.h"
 #include "inversion/inversion_low_rank.h"
 #include "problem/group_kind.h"
 #include "system/scaled_system.h"
@@ -45,8 +46,8 @@ static enum status check_shares(const struct composition *composition,
         100 * system->distortion, (long long)next);
 }
 
-/// The smallest number to ask for that makes so many beads, no more than the scene has: molecules
-/// are whole, and may be rounded down.
+/// The smallest number to ask for that makes so many beads and keeps shares, no more than the scene
+/// has: molecules are whole, and may be rounded down.
 static int64_t find_least(const struct simulation_setup *scene, const struct topology *topology,
                           double beads) {
     const int64_t all = mf_composition_particles(&scene->composition);
@@ -54,7 +55,8 @@ static int64_t find_least(const struct simulation_setup *scene, const struct top
     for (; particles < all; particles++) {
         const struct scaled_system system =
             mf_scaled_system(&scene->composition, topology, particles);
-        if ((double)mf_composition_particles(&system.composition) >= beads)
+        if ((double)mf_composition_particles(&system.composition) >= beads &&
+            system.distortion <= max_distortion)
             break;
     }
     return particles;
@@ -66,7 +68,8 @@ struct inversion_edge {
     const char *holds;
 };
 
-/// Of each pair one image is in range: of g(r), and of what is known.
+/// Of each pair one image is in range: of g(r), and of what is known. Single beads are sampled by
+/// Monte Carlo, whose list has a skin besides.
 static struct inversion_edge find_edge_of_pairs(const struct inverse_problem *problem) {
     const double range =
         problem->unknown[UNKNOWN_POTENTIAL].wanted ? mf_rdf_bins_range(&problem->targets.bins) : 0;
@@ -75,8 +78,13 @@ static struct inversion_edge find_edge_of_pairs(const struct inverse_problem *pr
         const struct curve *const curve = inverse_law_curve(&problem->known, pair);
         known = fmax(known, curve ? mf_curve_cutoff(curve) : 0);
     }
-    return known > range ? (struct inversion_edge){2 * known, "twice the cutoff of \"known\""}
-                         : (struct inversion_edge){2 * range, "twice the range of g(r)"};
+    const double reach = fmax(known, range);
+    if (topology_of(&problem->scene))
+        return (struct inversion_edge){2 * reach, known > range ? "twice the cutoff of \"known\""
+                                                                : "twice the range of g(r)"};
+    return (struct inversion_edge){metropolis_shortest_box(reach),
+                                   known > range ? "2.1 times the cutoff of \"known\""
+                                                 : "2.1 times the range of g(r)"};
 }
 
 /// By its target, or by its law if it has none [λ].
@@ -132,8 +140,7 @@ static enum status check_edges(const struct inverse_problem *problem, const stru
     if (whole.least > of_scene)
         whole = (struct inversion_edge){
             of_scene, "that of the scene, in which a molecule may already meet its own image"};
-    TRY(check_edge(&problem->scene, box, wanted, &pairs));
-    return check_edge(&problem->scene, box, wanted, &whole);
+    return check_edge(&problem->scene, box, wanted, whole.least > pairs.least ? &whole : &pairs);
 }
 
 /// So many particles at the densities of the scene, and their box.

@@ -318,7 +318,7 @@ static void test_a_small_box_holds_the_range_of_the_known_part(void **state) {
     small_inputs_change(*state, "run.json", "\"precision\"", "\"particles\": 100, \"precision\"");
     RUN_PROGRAM(&result, "fit", "run.json", "-o", "wrong", "--quiet");
     const char *words[] = {"method.particles: 100 make a box whose shortest edge, 3.68",
-                           "twice the cutoff of \"known\", 4; 12", NULL};
+                           "2.1 times the cutoff of \"known\", 4.2; 149 are", NULL};
     run_program_assert_refused(&result, "wrong", words[0], 1, words);
 }
 
