@@ -20,7 +20,8 @@ _NAMES = {"s": "structure", "o": "folder"}
 #: What the program says to do next, and what does the same here.
 _NEXT = ((r"mesofit export .*? --engine lammps", 'export("lammps") of the result'),
          (r"run the pieces whose folders are listed in .*?, and go on with --engine later --resume",
-          "tell each of `pieces` its frames, and go_on()"))
+          "tell each of `pieces` its frames, and go_on()"),
+         (r"( are no window of \d+ intervals) \(--window\)", r"\1 (give window, or the count of Frames)"))
 
 
 def said(text: str, frames: bool = False, hidden: str = "") -> str:

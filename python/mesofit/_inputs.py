@@ -39,14 +39,17 @@ def absolute(path: Any, what: str) -> Path:
 
 
 def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """`base` with `changes` in it, at all depths (RFC 7396); None removes."""
+    """`base` with `changes` in it, at all depths (RFC 7396); None removes. Another law has other
+    keys, and is put in the place of the one before."""
     result = dict(base)
     for key, value in changes.items():
         if value is None:
             result.pop(key, None)
         elif isinstance(value, Mapping):
             before = result.get(key)
-            result[key] = merge(before if isinstance(before, Mapping) else {}, value)
+            if not isinstance(before, Mapping) or value.get("law") not in (None, before.get("law")):
+                before = {}
+            result[key] = merge(before, value)
         else:
             result[key] = value
     return result
@@ -104,8 +107,8 @@ class Memory:
         """Lend an object as a text of this name, and the arrays in it as tables beside."""
         try:
             self.texts[name] = json.dumps(self._plain(content, name), allow_nan=False)
-        except (TypeError, ValueError, RecursionError) as fault:
-            raise fault if isinstance(fault, InputError) else InputError(f"{name}: {fault}")
+        except RecursionError as fault:
+            raise InputError(f"{name}: {fault}") from None
         return name
 
     def _table(self, value: Any, path: str) -> str:
@@ -129,13 +132,18 @@ class Memory:
         if isinstance(value, np.ndarray):
             if _is_masked(value):
                 raise InputError(f"{path}: values are masked; leave them out, or fill them")
-            return value.tolist()
+            return self._plain(value.tolist(), path)
         if isinstance(value, np.generic):
-            return value.item()
+            return self._plain(value.item(), path)
         if isinstance(value, os.PathLike):
             return os.fspath(value)
         if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
             return [self._plain(member, path) for member in value]
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(f"{path}: {value} is not finite")
+        if value is not None and not isinstance(value, (bool, int, float, str)):
+            raise InputError(f"{path}: expected a number, a text, a list or a dict, found "
+                             f"{type(value).__name__}")
         return value
 
     def lend(self) -> c.Inputs:
@@ -214,7 +222,8 @@ class Frames:
     time : "ps", "fs", "ns" or a number of ps
         Units of all that is given.
     count : int, optional
-        Of a function: how many frames there are. Any may then be asked for again.
+        Of a function: how many frames there are. Any may then be asked for again. Without it the
+        window of motion is 100 frames unless `measure` is told one.
     particles : int, optional
         Of a function, where no types are given.
 
@@ -235,6 +244,10 @@ class Frames:
         self._first: Any = None
         self.length, self.time = _unit(length, _LENGTHS), _unit(time, _TIMES)
         if callable(positions):
+            for what, given in (("box", box), ("velocities", velocities), ("forces", forces),
+                                ("times", times)):
+                if given is not None:
+                    raise InputError(f"{what}: of a function they are in the dicts that it gives")
             self._get: Callable[[int], Any] = positions
             self.count = 0 if count is None else int(count)
             self.particles = particles if particles is not None else (
@@ -259,6 +272,8 @@ class Frames:
                      times: Any) -> None:
         at = numbers(positions, "positions", (None, None, 3))
         self.count, self.particles = at.shape[0], at.shape[1]
+        if self.count == 0:
+            raise InputError("positions: there are no frames")
         speed = None if velocities is None else numbers(velocities, "velocities", at.shape)
         push = None if forces is None else numbers(forces, "forces", at.shape)
         when = None if times is None else numbers(times, "times", (self.count,))
@@ -292,8 +307,9 @@ class Frames:
             return -1
 
     def _fill(self, got: Any, number: int, frame: Any) -> None:
-        if isinstance(got, np.ndarray):
-            got = {"positions": got}
+        if not isinstance(got, Mapping) or "positions" not in got:
+            raise InputError(f"frame {number + 1}: expected a dict with \"positions\", found "
+                             f"{type(got).__name__}")
         positions = numbers(got["positions"], "positions", (self.particles, 3))
         velocities, forces = (
             None if got.get(what) is None else numbers(got[what], what, (self.particles, 3))

@@ -155,7 +155,8 @@ class Simulation(Owned):
         Raises
         ------
         InputError
-            It is no function. What it raises, or a force that is not finite, is raised by `run`.
+            It is no function. What it raises, or a force that is not finite, ends `run` with that
+            step, and is raised by it.
         """
         self._check_idle()
         if force is None:
@@ -171,7 +172,7 @@ class Simulation(Owned):
         c.lib.mesofit_simulation_set_force(self._pointer, self._force, None)
 
     def _wrap(self, force: Callable[..., Any]) -> Any:
-        dimensions, faults = self.dimensions, self._faults
+        dimensions, faults, handle = self.dimensions, self._faults, self._pointer
 
         def call(context: Any, count: int, ids: Any, positions: Any, forces: Any) -> float:
             if faults:
@@ -190,6 +191,7 @@ class Simulation(Owned):
                 return 0.0 if energy is None else float(energy)
             except BaseException as fault:  # noqa: B902 - raised again by run
                 faults.append(fault)
+                c.lib.mesofit_simulation_stop(handle)  # after this step
                 return 0.0
         return c.FORCE(call)
 
@@ -204,10 +206,13 @@ class Simulation(Owned):
         try:
             self._work(function, *arguments,
                        stop=lambda: c.lib.mesofit_simulation_stop(self._pointer))
+        except KeyboardInterrupt:
+            if not self._faults:  # which have stopped it
+                raise
         finally:
             self._lock.release()
-            if self._faults:
-                raise self._faults.pop()
+        if self._faults:
+            raise self._faults.pop()
 
     def run(self, steps: int) -> "Simulation":
         """Advance. Ctrl-C is seen between steps, after which it can go on. A call costs some 50 µs

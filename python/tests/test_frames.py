@@ -229,6 +229,18 @@ def test_motion_of_masses_that_may_differ_is_not_fitted(masses, reason, tmp_path
     assert reason is None or reason in lines
 
 
+def test_a_function_of_few_frames_is_told_what_it_needs():
+    def get(number):
+        at = np.random.default_rng(number).random((50, 3))
+        return {"positions": 3 * at, "box": [3, 3, 3], "time": number} if number < 60 else None
+    with pytest.warns(mesofit.MesofitWarning, match="60 frames are no window of 100 intervals "
+                                                    r"\(give window, or the count of Frames\)"):
+        mesofit.measure(mesofit.Frames(get, types=["A"] * 50), temperature=300)
+    counted = mesofit.measure(mesofit.Frames(get, types=["A"] * 50, count=60),
+                              temperature=300)
+    assert "msd" in counted.tables
+
+
 def test_fault_of_a_function_is_the_callers():
     def get(number):
         if number == 1:
@@ -258,6 +270,10 @@ def test_fault_of_a_function_is_the_callers():
     (dict(positions=lambda number: None), "types, or the number of particles"),
     (dict(positions=lambda number: None, types="AB"), "no frame"),
     (dict(positions=lambda number: {"positions": np.zeros((3, 3))}, types="AB"), "expected shape"),
+    (dict(positions=np.zeros((0, 2, 3))), "positions: there are no frames"),
+    (dict(positions=lambda number: np.zeros((2, 3)), types="AB"),
+     'frame 1: expected a dict with "positions", found ndarray'),
+    (dict(positions=lambda number: None, types="AB", box=[3, 3, 3]), "box: of a function"),
 ])
 def test_wrong_frames_are_refused(about, text):
     with pytest.raises(mesofit.InputError, match=text):

@@ -215,3 +215,23 @@ def test_the_number_of_particles_that_is_advised_is_taken(run_file):
         mesofit.fit(run_file, method={**method, "particles": least - 1})
     result = mesofit.fit(run_file, method={**method, "particles": least})
     assert result.used["method"]["particles"] == least
+
+
+@pytest.mark.parametrize("keys, text", [
+    ({"temperature": float("nan")}, "temperature: nan is not finite"),
+    ({"temperature": np.float32("inf")}, "temperature: inf is not finite"),
+    ({"box": np.array([4, np.nan, 4])}, "box: nan is not finite"),
+    ({"observables": lambda *_: 1}, "observables: expected a number, a text, a list or a dict, "
+                                    "found function")])
+def test_values_that_no_file_has_are_named_by_their_keys(keys, text):
+    for run in (lambda: mesofit.Simulation(SCENE, **keys), lambda: mesofit.fit(SCENE, **keys)):
+        with pytest.raises(InputError, match=text):
+            run()
+
+
+def test_another_law_takes_the_place_of_the_first():
+    own = mesofit.law(lambda r: 10 * (1 - r), 1)
+    assert mesofit.Scene(SCENE, conservative=own)["conservative"].keys() == {"law", "file"}
+    assert mesofit.Scene(SCENE, conservative={"a": 20})["conservative"] == {
+        "law": "soft-repulsion", "a": 20}
+    assert len(mesofit.Simulation(SCENE, conservative=own)) == 190
