@@ -56,14 +56,15 @@ def _band(ax: Any, x: Array, y: Array, error: Array, colour: str) -> None:
     ax.fill_between(x, y - error, y + error, color=colour, alpha=0.22, linewidth=0)
 
 
-def _draw_compared(table: Table, ax: Any, part: str) -> None:
-    """A target and the result, each with its band."""
+def _draw_compared(table: Table, ax: Any, part: str, colour: str) -> None:
+    """A target and the result, each with its band; of a pair of types both in its colour."""
     x = table[0]
-    for name, colour, style in (("target", INK, "-"), ("result", COLOURS[0], "-")):
-        label = f"{name} {part}".strip()
-        ax.plot(x, table[name], style, color=colour, linewidth=1.4, label=label)
+    for name, own, style in (("target", INK, "--" if part else "-"), ("result", COLOURS[0], "-")):
+        own = colour if part else own
+        label = part if part and name == "result" else f"{name} {part}".strip()
+        ax.plot(x, table[name], style, color=own, linewidth=1.4, label=label)
         if name + "_error" in table:
-            _band(ax, x, table[name], table[name + "_error"], colour)
+            _band(ax, x, table[name], table[name + "_error"], own)
     ax.legend(frameon=False)
 
 
@@ -76,30 +77,33 @@ def _window(table: Table, column: str) -> tuple[float, float] | None:
     return -1.5 * depth, 6 * depth
 
 
-def draw_table(table: Table, ax: Any = None, part: str = "") -> Any:
-    """Lines of a table over its first column; a column "x_error" is the band of "x"."""
+def draw_table(table: Table, ax: Any = None, part: str = "", colour: str = "") -> Any:
+    """Lines of a table over its first column; a column "x_error" is the band of "x". That of a
+    pair of types, `part`, may have a colour."""
     if len(table.columns) < 2:
         raise InputError(f"{table.name}: a table of one column is no figure")
     ax = _axes(ax)
     x = table[0]
-    values = [name for name in table.columns[1:] if "error" not in name and name != "force"]
+    values = [name for name in table.columns[1:]
+              if "error" not in name and name not in ("force", "vectors")]
     if "target" in table and "result" in table:
-        _draw_compared(table, ax, part)
+        _draw_compared(table, ax, part, colour)
     else:
         if "phi" in values or "omega" in values:
             values = values[:1]
         first = len(ax.lines)
         for k, name in enumerate(values[:_MOST_LINES]):
-            colour = COLOURS[(first + k) % len(COLOURS)]
-            ax.plot(x, table[name], color=colour, linewidth=1.6,
+            own = colour or COLOURS[(first + k) % len(COLOURS)]
+            ax.plot(x, table[name], color=own, linewidth=1.6,
                     label=part or _SYMBOLS.get(name, name))
             if name + "_error" in table:
-                _band(ax, x, table[name], table[name + "_error"], colour)
+                _band(ax, x, table[name], table[name + "_error"], own)
         if len(values) > 1 or part:
             ax.legend(frameon=False)
         window = _window(table, values[0]) if values else None
         if window is not None:
-            ax.set_ylim(*window)
+            low, high = window if ax.get_autoscaley_on() else ax.get_ylim()  # of other pairs
+            ax.set_ylim(min(low, window[0]), max(high, window[1]))
     name = values[0] if values else table.columns[1]
     unit = table.unit(name)
     label = _SYMBOLS.get(name, name)
@@ -113,34 +117,40 @@ def draw_table(table: Table, ax: Any = None, part: str = "") -> Any:
 _FIRST = ("rdf", "potential", "omega", "history", "bond_lengths", "msd", "structure_factor")
 
 
-def _panels(result: "Result") -> list[str]:
-    """Names of tables that make a figure of the result, at most four."""
-    names = [name for first in _FIRST for name in Curves._parts(first, result.tables).values()]
-    return names[:4]
+def _panels(result: "Result") -> dict[str, dict[str, str]]:
+    """What makes a figure of the result, at most four: names of tables by pairs of types."""
+    found = {first: Curves._parts(first, result.tables) for first in _FIRST}
+    return dict([(first, parts) for first, parts in found.items() if parts][:4])
+
+
+def _draw_history(table: Table, ax: Any) -> None:
+    for k, column in enumerate(column for column in ("error", "noise") if column in table):
+        ax.semilogy(table[0], table[column], "o-", color=COLOURS[k], label=column, markersize=3)
+    ax.legend(frameon=False)
+    _style(ax, table, "error")
 
 
 def draw_result(result: "Result") -> Any:
-    """A figure of what there is: g with its target, Φ, ω, errors by iteration."""
-    names = _panels(result)
-    if not names:
+    """A figure of what there is: g with its target, Φ, ω, errors by iteration. A pair of types has
+    one colour in all panels."""
+    panels = _panels(result)
+    if not panels:
         raise InputError(f"{result.folder}: no table that makes a figure")
+    pairs = list(dict.fromkeys(part for parts in panels.values() for part in parts))
     pyplot = _pyplot()
-    rows, columns = math.ceil(len(names) / 2), min(2, len(names))
+    rows, columns = math.ceil(len(panels) / 2), min(2, len(panels))
     figure, axes = pyplot.subplots(rows, columns, figsize=(4.6 * columns, 3.2 * rows),
                                    squeeze=False, layout="constrained")
-    for ax in axes.flat[len(names):]:
+    for ax in axes.flat[len(panels):]:
         ax.set_visible(False)
-    for ax, name in zip(axes.flat, names):
-        table = result.table(name)
-        if name == "history":
-            for k, column in enumerate(column for column in ("error", "noise") if column in table):
-                ax.semilogy(table[0], table[column], "o-", color=COLOURS[k], label=column,
-                            markersize=3)
-            ax.legend(frameon=False)
-            _style(ax, table, "error")
-        else:
-            draw_table(table, ax)
-        ax.set_title(name, fontsize="medium")
+    for ax, (first, parts) in zip(axes.flat, panels.items()):
+        for part, name in list(parts.items())[:_MOST_LINES]:
+            if name == "history":
+                _draw_history(result.table(name), ax)
+            else:
+                colour = COLOURS[pairs.index(part) % len(COLOURS)] if part else ""
+                draw_table(result.table(name), ax, part, colour)
+        ax.set_title(first, fontsize="medium")
     return figure
 
 

@@ -17,7 +17,7 @@ from . import _library as c
 from ._errors import FileError, InputError, check, fail
 from ._inputs import Memory, PathLike, absolute, encode
 from ._run import Folder, Outcome, carry_out
-from ._table import Curves, Table
+from ._table import Curves, Table, named
 
 
 class _Handle:
@@ -93,7 +93,7 @@ class Result:
         Parameters
         ----------
         name : str
-            "rdf", "rdf_A-B", "potential", …: one of `tables`.
+            "rdf", "rdf_A-B" or "rdf_B-A", "potential", …: one of `tables`.
 
         Returns
         -------
@@ -105,6 +105,7 @@ class Result:
             There is none; the text lists those that there are.
         """
         handle, columns = self._open(), c.Columns()
+        name = named(name, self.tables)
         if name not in self.tables:
             raise InputError(f"no table {name!r}; there are {', '.join(self.tables)}")
         with handle.lock:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import html
 import re
-from collections.abc import ItemsView, Iterator, KeysView
+from collections.abc import Container, ItemsView, Iterator, KeysView
 from typing import Any
 
 import numpy as np
@@ -177,6 +177,21 @@ class Table:
 _OTHERS = re.compile(r"(^|_)(history|flat|lower|upper)$|^now(_|$)")
 
 
+def named(name: Any, names: Container[str]) -> Any:
+    """A name as `names` has it: "rdf_B-A" may be "rdf_A-B"."""
+    if not isinstance(name, str) or name in names:
+        return name
+    tail = "".join(re.findall(r"_(?:history|flat|lower|upper)$", name))
+    body = name.removesuffix(tail)
+    for begin in [0, *(found.end() for found in re.finditer("_", body))]:
+        words = body[begin:].split("-")
+        for n in range(1, len(words)):  # types may have such a stroke in their names
+            turned = body[:begin] + "-".join(words[n:] + words[:n]) + tail
+            if turned in names:
+                return turned
+    return name
+
+
 class Curves:
     """Curves of one kind: a table for each pair of types, by the name "A-B"; "" of beads that are
     alike. A single one has its values, columns, units, plot and conversions directly.
@@ -258,16 +273,9 @@ class Curves:
         """
         return self.table.to_pandas()
 
-    def _named(self, part: str) -> str:
-        """The name of a pair as the tables have it, of "B-A", too."""
-        words = part.split("-")
-        turned = ("-".join(words[n:] + words[:n]) for n in range(1, len(words)))
-        return part if part in self._tables else next(
-            (name for name in turned if name in self._tables), part)
-
     def __getitem__(self, part: str) -> Table | Any:
-        if self._named(part) in self._tables:
-            return self._tables[self._named(part)]
+        if named(part, self._tables) in self._tables:
+            return self._tables[named(part, self._tables)]
         if len(self._tables) == 1:
             return self.table[part]
         raise InputError(f"{self.name}: no \"{part}\"; there are {', '.join(self._tables)}")
@@ -276,7 +284,7 @@ class Curves:
         return iter(self._tables)
 
     def __contains__(self, part: object) -> bool:
-        if isinstance(part, str) and self._named(part) in self._tables:
+        if named(part, self._tables) in self._tables:
             return True
         return len(self._tables) == 1 and part in self.table
 

@@ -51,6 +51,8 @@ def test_figures_are_drawn(fitted, simulated, matplotlib):
     compared = fitted["rdf"].plot()
     assert [text.get_text() for text in compared.get_legend().get_texts()] == ["target", "result"]
     assert len(fitted.plot().axes) >= 3
+    waves = mesofit.Table("structure_factor", ("q", "S", "vectors"), ("", "", ""), np.ones((3, 3)))
+    assert len(waves.plot().lines) == 1  # how many vectors a bin has is no curve
     assert "<img src=" in simulated._repr_html_()
     with pytest.raises(mesofit.InputError):
         mesofit.Table("one", ("a",), ("",), np.zeros((3, 1))).plot()
@@ -70,6 +72,26 @@ def test_curves_of_a_mixture_have_names(matplotlib):
         curves.table
     with pytest.raises(mesofit.InputError, match="A-A, A-B"):
         curves["B-B"]
+
+
+def test_pairs_of_a_mixture_have_one_colour_in_all_panels(tmp_path, matplotlib):
+    r = np.linspace(0.1, 2, 20)
+    for k, pair in enumerate(("2-2", "2-1", "1-1")):
+        g, phi = 1 - np.exp(-r / (k + 1)), (k + 1) * (r**-2 - 2 * r**-1)
+        for name, heading, columns in (("rdf", "r target result", (r, g, g)),
+                                       ("potential", "r phi phi_error", (r, phi, 0 * r))):
+            np.savetxt(tmp_path / f"{name}_{pair}.tsv", np.column_stack(columns), delimiter="\t",
+                       header=heading.replace(" ", "\t"))
+    (tmp_path / "summary.json").write_text("{}")
+    result = mesofit.open(tmp_path)
+    g, phi = result.plot().axes
+    colours = {line.get_label(): line.get_color() for line in phi.lines}
+    assert set(colours) == {"1-1", "2-1", "2-2"} and len(set(colours.values())) == 3
+    assert colours.items() <= {line.get_label(): line.get_color() for line in g.lines}.items()
+    assert len(g.lines) == 6 and phi.get_ylim()[0] < -3  # the deepest well, of 1-1
+    assert np.array_equal(result["rdf_1-2"].values, result["rdf_2-1"].values)
+    with pytest.raises(mesofit.InputError, match="no table 'rdf_1-3'"):
+        result["rdf_1-3"]
 
 
 def test_numbers_are_shown_with_their_errors():
