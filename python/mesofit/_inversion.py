@@ -172,6 +172,7 @@ class Inversion:
         self._run(resume, force)
 
     def _run(self, resume: bool, force: bool) -> None:
+        before = self._listed()
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", InterruptedWarning)
@@ -180,10 +181,25 @@ class Inversion:
         except KeyboardInterrupt:
             if not self._waiting():
                 raise
+        except InputError:
+            if self._listed() != before:  # for pieces whose samples were none
+                self._put_aside()
+            raise
+
+    def _list(self) -> Path:
+        return self._place.path / "engine" / "waiting"
+
+    def _listed(self) -> int:
+        return self._list().stat().st_mtime_ns if self._list().exists() else 0
 
     def _waiting(self) -> list[Path]:
-        listed = self._place.path / "engine" / "waiting"
-        return [Path(line) for line in listed.read_text().splitlines()] if listed.exists() else []
+        return [Path(line) for line in self._list().read_text().splitlines()] if self._listed() else []
+
+    def _put_aside(self) -> None:
+        for folder in self._waiting():
+            frames = folder / _FRAMES
+            if frames.exists():
+                frames.rename(folder / (_FRAMES + ".broken"))
 
     @property
     def ended(self) -> bool:

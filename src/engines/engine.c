@@ -155,11 +155,8 @@ enum status mf_engine_wait(struct engine_run *run, const char *folder) {
 }
 
 enum status mf_engine_refuse(struct engine_run *run, const char *folder, enum status status) {
-    if (!run->later)
-        return status;
-    if (status == STATUS_BAD_INPUT) // else they would be read again
-        mf_engine_folder_put_aside(folder, run->tongue->frames(run));
-    (void)mf_engine_wait(run, folder);
+    if (run->later)
+        (void)mf_engine_wait(run, folder);
     return status;
 }
 

@@ -93,8 +93,8 @@ static inline uint64_t engine_steps(const struct engine_run *run, uint64_t sweep
 /// begin it. Fails: IO.
 enum status mf_engine_wait(struct engine_run *run, const char *folder);
 
-/// Of pieces that somebody else runs: put frames that are no samples aside, and wait for the piece
-/// again. Returns the status, why they are none.
+/// Of pieces that somebody else runs, whose frames are no samples: wait for the piece again.
+/// Returns the status, why they are none.
 enum status mf_engine_refuse(struct engine_run *run, const char *folder, enum status status);
 
 /// Compare the first frame of a piece, by a digest of its places, with that of the other replicas.

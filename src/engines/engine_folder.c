@@ -117,13 +117,6 @@ enum status mf_engine_folder_link(const char *folder, const char *file, const ch
     return symlink(path, link) == 0 || errno == EEXIST ? STATUS_OK : fail(link, "make the link");
 }
 
-void mf_engine_folder_put_aside(const char *folder, const char *name) {
-    char path[OUTPUT_PATH_SIZE], aside[OUTPUT_PATH_SIZE + 8];
-    mf_engine_path(folder, name, path);
-    snprintf(aside, sizeof aside, "%s.broken", path);
-    (void)rename(path, aside);
-}
-
 enum status mf_engine_write(const char *folder, const char *name, engine_print *print,
                             const void *context) {
     char path[OUTPUT_PATH_SIZE];

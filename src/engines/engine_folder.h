@@ -18,9 +18,6 @@ enum status mf_engine_folder_make(const char *fit, const char *folder) MUST_USE;
 /// Remove it with all that is in it; links are removed, not what they name. Fails: IO.
 enum status mf_engine_folder_remove(const char *folder) MUST_USE;
 
-/// Call a file of it NAME.broken, if it is there.
-void mf_engine_folder_put_aside(const char *folder, const char *name);
-
 /// Link there what lies beside a file under a name, with the folders of that name. Fails: IO.
 enum status mf_engine_folder_link(const char *folder, const char *file, const char *name) MUST_USE;
 

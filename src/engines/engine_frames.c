@@ -118,11 +118,8 @@ static enum status open_trajectory(const struct engine_run *run, struct engine_f
     return status;
 }
 
-/// Fewer frames than were asked for are a fault; what comes after them is left. Whoever runs the
-/// pieces may still be writing.
+/// Fewer frames than were asked for are a fault; what comes after them is left.
 static enum status fail_short(const struct engine_frames *frames) {
-    if (frames->run->later)
-        TRY(mf_engine_wait(frames->run, frames->folder));
     return mf_status_fail(
         STATUS_BAD_INPUT, "%s: it ends after %llu of the %llu frames that were asked for",
         frames->file, (unsigned long long)frames->taken, (unsigned long long)frames->wanted);
@@ -343,16 +340,14 @@ static enum status find_sample(struct engine_frames *frames, struct engine_sampl
 }
 
 static enum status next(struct engine_frames *frames, double *const position[3],
-                        struct engine_sample *sample, bool *ended) {
+                        struct engine_sample *sample) {
     struct trajectory_frame *frame = &frames->frame;
     const size_t reads = frames->taken == 0 ? frames->skip + 1 : 1;
     for (size_t k = 0; k < reads; k++) {
         bool more;
         TRY(mf_trajectory_next(&frames->trajectory, frame, &more));
-        if (!more) {
-            *ended = true;
-            return STATUS_OK;
-        }
+        if (!more)
+            return fail_short(frames);
     }
     TRY(check_motion(frames));
     TRY(find_sample(frames, sample));
@@ -376,9 +371,6 @@ static enum status next(struct engine_frames *frames, double *const position[3],
 enum status mf_engine_frames_next(void *memory, double *const position[3],
                                   struct engine_sample *sample) {
     struct engine_frames *frames = memory;
-    bool ended = false;
-    const enum status status = next(frames, position, sample, &ended);
-    if (status != STATUS_OK)
-        return mf_engine_refuse(frames->run, frames->folder, status);
-    return ended ? fail_short(frames) : STATUS_OK;
+    const enum status status = next(frames, position, sample);
+    return status == STATUS_OK ? STATUS_OK : mf_engine_refuse(frames->run, frames->folder, status);
 }

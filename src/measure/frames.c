@@ -69,11 +69,11 @@ static enum status open_file(struct frames *frames) {
 
 static enum status close_file(struct frames *frames) {
     const struct frames_source *source = &frames->source[frames->at];
+    const bool most = 2 * source->doubled >= source->read;
     if (source->doubled > 0)
-        TRY(note(frames,
-                 "mesofit: warning: %s: %zu frames of times that had been were left out, as those "
-                 "that a restarted run repeats; --static uses frames of any times",
-                 frames->plan.file[frames->at], source->doubled));
+        TRY(note(frames, "%s%s: %zu frames of times that had been were left out%s",
+                 most ? "mesofit: warning: " : "", frames->plan.file[frames->at], source->doubled,
+                 most ? ", half of them or more; --static uses frames of any times" : ""));
     mf_trajectory_close(&frames->trajectory);
     frames->open = false;
     frames->at++;

@@ -194,11 +194,13 @@ static enum status refuse_plane(const struct box_vectors *box,
                                 const struct trajectory_frame *first) {
     if (!mf_frame_box_is_plane(box, first))
         return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: frame %zu: all atoms lie in one plane: trajectories of two "
-                          "dimensions are not measured; g(r) that another program has of them is a "
-                          "target of a scene with \"dimensions\": 2",
-                          first->file, first->number);
+    return mf_status_fail(
+        STATUS_BAD_INPUT,
+        "%s: frame %zu: all atoms lie in one plane: trajectories of two "
+        "dimensions are not measured; g(r) that another program has of them is a "
+        "target of a scene with \"dimensions\": 2 (a sheet that was flat at first "
+        "is measured with a later --begin)",
+        first->file, first->number);
 }
 
 static bool is_without_box(const struct trajectory_frame *frame) {

@@ -136,13 +136,10 @@ static bool have_same_ids(const struct structure *list, const struct structure *
 
 /// Atoms of the same ids are the same atoms, and of the same types.
 static enum status fail_type(const char *file, const struct structure_atom *listed,
-                             const struct structure_atom *atom, bool numbers) {
-    if (numbers)
-        return mf_status_fail(STATUS_BAD_INPUT,
-                              "%s: atom %lld is of type %lld, in the trajectory of %lld", file,
-                              (long long)atom->id, (long long)listed->type, (long long)atom->type);
-    return mf_status_fail(STATUS_BAD_INPUT, "%s: atom %lld is of type %s, in the trajectory of %s",
-                          file, (long long)atom->id, listed->name, atom->name);
+                             const struct structure_atom *atom) {
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: atom %lld is of type %lld, in the trajectory of %lld", file,
+                          (long long)atom->id, (long long)listed->type, (long long)atom->type);
 }
 
 /// Whether atoms of the trajectory are called as those of the listing, or are of its numbers of
@@ -158,8 +155,8 @@ static enum status find_listed(const struct structure *list, const char *file,
         const struct structure_atom *const a = &list->atom[k % list->atoms], *const b =
                                                                                  &of->atom[k];
         *listed = strcmp(a->name, b->name) == 0 || (numbers && a->type == b->type);
-        if (ids && !*listed)
-            return fail_type(file, a, b, numbers);
+        if (ids && numbers && !*listed)
+            return fail_type(file, a, b);
     }
     return STATUS_OK;
 }

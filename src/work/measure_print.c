@@ -110,8 +110,8 @@ static void print_motion(struct progress *progress, const struct measure_result 
     if (result->frames->unsorted)
         mf_progress_print(progress,
                           "mesofit: warning: no ids tell atoms apart: MSD, D, escape times and "
-                          "VACF take each row for one atom, and LAMMPS changes their order; dump "
-                          "the column id, too, or use \"dump_modify sort id\"");
+                          "VACF take each row for one atom, as is right where rows are sorted "
+                          "(\"dump_modify sort id\"); else dump the column id, too");
     if (mf_motion_blocks(&motion->motion) == 0)
         mf_progress_print(progress,
                           "mesofit: warning: no motion, no escape times: %zu frames are no window "

@@ -115,7 +115,6 @@ static void test_what_the_first_frame_shows_is_told_once(void **state) {
     assert_null(strstr(first + 1, words));
 }
 
-/// A temperature takes no times.
 /// Rows of LAMMPS are other atoms in each frame, unless ids tell which.
 static void test_motion_of_rows_that_may_be_any_atoms(void **state) {
     static const char words[] = "mesofit: warning: no ids tell atoms apart: MSD, D, escape times "
@@ -134,6 +133,7 @@ static void test_motion_of_rows_that_may_be_any_atoms(void **state) {
     assert_without(words);
 }
 
+/// A temperature takes no times.
 static void test_velocities_without_times(void **state) {
     write_argon(*state);
     MEASURE("--file-units", "real", "--static", "--temperature", "400");
