@@ -12,8 +12,8 @@ struct inversion_memory {
 
 /// Samples that count as one independent, of a run in which so many were found to: what outlasts a
 /// short run is hardly seen by it, and counts as a longer one has shown it, until one as long shows
-/// less. With one correlation time τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is
-/// coth(h/2τ). Tested: test_inversion_memory.
+/// less. With one correlation time τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which
+/// is coth(h/2τ). Tested: test_inversion_memory.
 /// @param[in] every  sweeps between samples
 /// @param[in] run    sweeps of each replica
 static inline double mf_inversion_memory_recall(struct inversion_memory *memory, double every,
