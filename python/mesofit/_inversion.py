@@ -216,7 +216,8 @@ class Inversion:
                 if not piece.told]
 
     def go_on(self) -> None:
-        """Take what was told, and ask for what is needed next. Raises: as `fit`."""
+        """Take what was told, and ask for what is needed next. Raises: as `fit`. Frames that are no
+        samples are put aside, as frames.extxyz.broken, and their piece is asked for again."""
         self._run(True, False)
 
     @property

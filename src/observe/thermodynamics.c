@@ -272,17 +272,23 @@ enum status mf_thermodynamics_assess(const struct thermodynamics_summary *summar
                                    : "lower \"time_step\", or equilibrate for longer");
 }
 
+/// @param[in] why  and what is to be done
+static enum status fail_temperature(const struct thermodynamics_summary *s,
+                                    const struct simulation_setup *setup, const char *why) {
+    return mf_status_fail(STATUS_UNSTABLE,
+                          "the temperature is %.3g" STATUS_TEMPERATURE
+                          ", not %.3g" STATUS_TEMPERATURE ": %s",
+                          s->temperature, setup->temperature, why);
+}
+
 enum status mf_thermodynamics_assess_unheld(const struct thermodynamics_summary *s,
                                             const struct simulation_setup *setup) {
     if (simulation_holds_temperature(setup) || !mf_simulation_is_thermal(setup) ||
         s->blocks < MIN_BLOCKS || isnan(s->temperature) ||
         agrees(s->temperature, s->temperature_error, setup->temperature))
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNSTABLE,
-                          "the temperature is %.3g" STATUS_TEMPERATURE
-                          ", not %.3g" STATUS_TEMPERATURE ": there is no thermostat; give the "
-                          "scene \"dissipative\", friction and noise",
-                          s->temperature, setup->temperature);
+    return fail_temperature(
+        s, setup, "there is no thermostat; give the scene \"dissipative\", friction and noise");
 }
 
 /// What is wrong with a step, as a temperature tells that is so many per cent off.
@@ -319,11 +325,9 @@ static enum status assess_bath(const struct thermodynamics_summary *s,
     if (!simulation_has_velocities(setup) || !simulation_holds_temperature(setup) ||
         !is_off(s->temperature, certain * s->temperature_error, setup->temperature))
         return STATUS_OK;
-    return mf_status_fail(STATUS_UNSTABLE,
-                          "the temperature is %.3g" STATUS_TEMPERATURE
-                          ", not %.3g" STATUS_TEMPERATURE ": friction hardly holds it; more of it, "
-                          "or with a longer cutoff, or a longer run, does",
-                          s->temperature, setup->temperature);
+    return fail_temperature(s, setup,
+                            "friction hardly holds it; more of it, or with a longer cutoff, or a "
+                            "longer run, does");
 }
 
 enum status mf_thermodynamics_assess_step(const struct thermodynamics_summary *s,
