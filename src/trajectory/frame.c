@@ -253,6 +253,7 @@ void mf_frame_box_spread(const struct box_vectors *box, const struct trajectory_
 }
 
 bool mf_frame_box_is_plane(const struct box_vectors *box, const struct trajectory_frame *frame) {
+    enum { MIN_ATOMS = 16 }; // fewer may be a flat molecule, and two or three often are in a plane
     static const double flat = 1e-6, full = 0.5;
     double spread[3];
     int flats = 0, fulls = 0;
@@ -261,5 +262,5 @@ bool mf_frame_box_is_plane(const struct box_vectors *box, const struct trajector
         flats += spread[i] < flat;
         fulls += spread[i] > full;
     }
-    return flats == 1 && fulls == 2;
+    return frame->atoms >= MIN_ATOMS && flats == 1 && fulls == 2;
 }
