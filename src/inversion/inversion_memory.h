@@ -1,26 +1,44 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-/// @file How long samples remember, as the longest run of them has shown.
+/// @file How long samples remember, by all runs of a fit together.
 #pragma once
 
 #include <math.h>
+#include <stdbool.h>
 
-/// Of one pair type or group.
-struct inversion_memory {
-    double sweeps;  ///< twice the correlation time; 0: none
-    double seen_by; ///< sweeps of each replica of the run that has shown it
+/// Twice the correlation time of a pair type or group [sweeps], and the sweeps of each replica that
+/// have shown it.
+struct inversion_seen {
+    double sweeps;
+    double run;
 };
 
-/// Samples that count as one independent, of a run in which so many were found to: what outlasts a
-/// short run is hardly seen by it, and counts as a longer one has shown it, until one as long shows
-/// less. With one correlation time τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which
-/// is coth(h/2τ). Tested: test_inversion_memory.
+struct inversion_memory {
+    struct inversion_seen runs; ///< mean of the runs before, each by its length
+    struct inversion_seen last; ///< of the present run
+};
+
+/// Samples that count as one independent, of a run in which so many were found to: it and all runs
+/// before tell of one memory, each by its length, as what outlasts a short run is hardly seen by
+/// it, and what one run has found scatters as much as its replicas are few. With one correlation
+/// time τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is coth(h/2τ).
+/// Tested: test_inversion_memory.
 /// @param[in] every  sweeps between samples
-/// @param[in] run    sweeps of each replica
-static inline double mf_inversion_memory_recall(struct inversion_memory *memory, double every,
-                                                double run, double found) {
-    const double known = memory->sweeps > 0 ? 1 / tanh(every / memory->sweeps) : 1;
-    if (run < memory->seen_by && found < known)
-        return known;
-    *memory = (struct inversion_memory){found > 1 ? every / atanh(1 / found) : 0, run};
-    return found;
+/// @param[in] run    sweeps of each replica, in place of what was said of this run before
+static inline double mf_inversion_memory_find(struct inversion_memory *memory, double every,
+                                              double run, double found) {
+    const struct inversion_seen *before = &memory->runs;
+    memory->last = (struct inversion_seen){found > 1 ? every / atanh(1 / found) : 0, run};
+    const double mean =
+        (before->run * before->sweeps + run * memory->last.sweeps) / (before->run + run);
+    return mean > 0 ? 1 / tanh(every / mean) : 1;
+}
+
+/// The next run begins; that of a potential that was given up does not count.
+static inline void mf_inversion_memory_begin_run(struct inversion_memory *memory, bool given_up) {
+    struct inversion_seen *runs = &memory->runs, *last = &memory->last;
+    const double run = runs->run + last->run;
+    if (!given_up && last->run > 0)
+        *runs = (struct inversion_seen){(runs->run * runs->sweeps + last->run * last->sweeps) / run,
+                                        run};
+    *last = (struct inversion_seen){0};
 }

@@ -309,6 +309,8 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
                                                                       progress->best.distance),
                                              .min = NAN,
                                              .mean = NAN}};
+    for (size_t block = 0; block < state->grid.blocks; block++)
+        mf_inversion_memory_begin_run(&state->memory[block], progress->from_disorder);
     state->assessment.stretch = progress->stretch;
     unequilibrated->for_long = false;
     state->open.independent = 0;
