@@ -7,8 +7,6 @@
 #include <gsl/gsl_cdf.h>
 #include <math.h>
 
-static const size_t min_samples = 20;
-
 /// Variances of means that are as good as the least, whose own scatter makes some tail the best.
 static const double as_good = 1.1;
 
@@ -80,7 +78,7 @@ static struct tail longest_of(const double *series, size_t samples, const struct
 }
 
 size_t mf_equilibration_length(const double *series, size_t samples) {
-    if (samples < min_samples)
+    if (samples < EQUILIBRATION_MIN_SAMPLES)
         return 0;
     struct tail best = tail_of(series, samples, 0);
     for (size_t s = 1; s <= samples / 2; s = next(s)) {
@@ -100,7 +98,7 @@ size_t mf_equilibration_length_of_events(const double *events, size_t samples) {
         together = fmax(together, events[k]);
         end = events[k] > 0 ? k + 1 : end;
     }
-    if (samples < min_samples || 2 * end > samples)
+    if (samples < EQUILIBRATION_MIN_SAMPLES || 2 * end > samples)
         return 0;
     return pow((double)end / (double)samples, together) < chance ? end : 0;
 }
@@ -267,7 +265,7 @@ static double judge_parts(const double *series, size_t samples) {
 struct equilibration_drift mf_equilibration_drift(const double *series, size_t samples) {
     struct equilibration_drift drift = {0};
     struct points points;
-    if (samples < min_samples)
+    if (samples < EQUILIBRATION_MIN_SAMPLES)
         return drift;
     find_points(series, samples, &points);
     const double step = judge_step(&points, &drift);
@@ -337,6 +335,11 @@ enum status mf_equilibration_check(const char *name, const char *unit, const dou
         mf_statistics_add(&all, series[k]);
     if (!(sqrt(all.squares / all.count) > sum_rounding * fabs(all.mean)))
         return STATUS_OK;
+    if (samples < EQUILIBRATION_MIN_SAMPLES)
+        return mf_status_fail(STATUS_UNCONVERGED,
+                              "too few samples of the %s (%zu) to tell whether the run was in "
+                              "equilibrium: %d at least",
+                              name, samples, EQUILIBRATION_MIN_SAMPLES);
     const size_t each = (samples + MAX_BLOCKS - 1) / MAX_BLOCKS, blocks = samples / each;
     TRY_ARRAY(block, blocks);
     average(series, each, block, blocks);

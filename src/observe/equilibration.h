@@ -8,6 +8,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/// Fewer samples do not tell.
+enum { EQUILIBRATION_MIN_SAMPLES = 20 };
+
 /// How many samples at the beginning are not in equilibrium; 0: nothing says so.
 ///
 /// Of all beginnings up to half of the series, that one after which the mean has the least standard
@@ -19,7 +22,7 @@
 ///
 /// Of 4000 series of 200 to 1000 samples in equilibrium, with a memory of up to a twentieth of
 /// them, fewer than 1 in 100 lose a sample.
-/// Fewer than 20 samples are all kept. Tested: test_equilibration.
+/// Fewer than EQUILIBRATION_MIN_SAMPLES are all kept. Tested: test_equilibration.
 /// @param[in] series  shape [samples]
 size_t mf_equilibration_length(const double *series, size_t samples);
 
@@ -55,7 +58,8 @@ struct equilibration_drift {
 /// s² being the noise of a part: half of the mean of (m_{b+l} − m_b)² for l = 1 or 2, whichever is
 /// larger, without the l largest squares, which a step has. Neighbours see little of a drift; where
 /// samples remember each other over several parts, s grows with l. The largest ratio R counts as
-/// an evidence of 3 + (R − 7.5)/2. 0 for fewer than 20 samples. Tested: test_equilibration_drift.
+/// an evidence of 3 + (R − 7.5)/2. 0 for fewer than
+/// EQUILIBRATION_MIN_SAMPLES. Tested: test_equilibration_drift.
 /// @param[in] series  shape [samples]
 struct equilibration_drift mf_equilibration_drift(const double *series, size_t samples);
 
@@ -78,10 +82,10 @@ static inline bool equilibration_drifts(const struct equilibration_drift *drift,
 ///
 /// Of series of n Gaussian samples with a memory of exp(−t/t_0) that are in equilibrium, with 40
 /// independent ones at least, it complains of less than 0.5 %; with 2 independent ones of more than
-/// 90 %. A series whose scatter is within rounding is in order, as are fewer than 20 samples.
+/// 90 %. A series whose scatter is within rounding is in order.
 ///
-/// Fails: UNCONVERGED with both parts, or the number of independent samples, in the message,
-/// NO_MEMORY. Tested: test_equilibrium.
+/// Fails: UNCONVERGED with both parts, or the number of independent samples, in the message, also
+/// of fewer than EQUILIBRATION_MIN_SAMPLES; NO_MEMORY. Tested: test_equilibrium.
 /// @param[in] name  "potential energy", for the message
 /// @param[in] unit  of it, reduced
 /// @param[in] series  shape [samples]

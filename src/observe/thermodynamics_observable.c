@@ -148,6 +148,7 @@ static enum status assess_change(const struct thermodynamics *t,
                                  const struct simulation_setup *setup) {
     if (!simulation_has_velocities(setup) || !simulation_holds_temperature(setup) ||
         !mf_simulation_is_thermal(setup) || !is_another(s, setup) ||
+        t->series.count < EQUILIBRATION_MIN_SAMPLES ||
         mf_equilibration_check("temperature", "T_0",
                                mf_thermodynamics_series(t, THERMODYNAMICS_TEMPERATURE),
                                t->series.count) == STATUS_OK)

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "scene/molecules_file.h"
 #include "io/units.h"
+#include "observe/equilibration.h"
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"
@@ -325,6 +326,11 @@ static void tell_rest(struct run *run, size_t left_out, size_t frames, const cha
 static enum status find_equilibrium(struct run *run) {
     const size_t frames = run->measured.frames;
     struct frame_features_slowest slowest;
+    if (frames < EQUILIBRATION_MIN_SAMPLES)
+        mf_progress_print(&run->progress,
+                          "too few frames (%zu) to tell whether the trajectory is in equilibrium: "
+                          "%d at least",
+                          frames, EQUILIBRATION_MIN_SAMPLES);
     TRY(mf_frame_features_assess(&run->measured.features, &run->measured.pairs, &slowest));
     if (slowest.frames == 0)
         return tell_drift(run, 0);
