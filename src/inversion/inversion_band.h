@@ -153,9 +153,8 @@ struct inversion_band_without {
 /// know no more, less the most probable one, is δ. Of a law that falls as exp(−κr) or r^-6 what
 /// lies beyond the range moves the pressure by (2s)² times that of its last fifth, within a third,
 /// at most as much; s is the share of the height of the last fifth that the slope at the end alone
-/// makes. So a law that ends there by itself, without a slope, leaves nothing. What noise alone
-/// makes of the change of a pair type's ramp does not count. Of star polymers whose tail is cut at
-/// 2.6, Φ was 8 of its other errors off, and 1.6 with 4.
+/// makes. So a law that ends there by itself, without a slope, leaves nothing. Of star polymers
+/// whose tail is cut at 2.6, Φ was 8 of its other errors off, and 1.6 with 4.
 /// Fails: NO_MEMORY. Tested: test_inversion_band_range, test_band_range.
 enum status mf_inversion_band_add_range(struct inversion *inversion,
                                         const struct inversion_band_without *without) MUST_USE;

@@ -118,24 +118,23 @@ done:
     return status;
 }
 
-/// Σ w of the bins first … end − 1 alone; returns w·Σ w.
-static double spread(const struct inversion *inversion, const double *weight, size_t first,
-                     size_t end, double *with) {
+/// out = Σ w; returns w·Σ w.
+static double spread(const struct inversion *inversion, const double *weight, double *out) {
     const size_t n = inversion_grid(inversion)->known;
     const double *covariance = inversion->course.band.covariance;
     double sum = 0;
     for (size_t a = 0; a < n; a++) {
-        with[a] = 0;
-        for (size_t b = first; b < end; b++)
-            with[a] += covariance[a * n + b] * weight[b];
-        sum += a >= first && a < end ? weight[a] * with[a] : 0;
+        out[a] = 0;
+        for (size_t b = 0; b < n; b++)
+            out[a] += covariance[a * n + b] * weight[b];
+        sum += weight[a] * out[a];
     }
     return sum;
 }
 
-static double along(const double *weight, const double *change, size_t first, size_t end) {
+static double along(const double *weight, const double *change, size_t n) {
     double sum = 0;
-    for (size_t a = first; a < end; a++)
+    for (size_t a = 0; a < n; a++)
         sum += weight[a] * change[a];
     return sum;
 }
@@ -152,28 +151,10 @@ static void meet(const struct inversion *inversion, const double *k, struct chan
     const size_t n = inversion_grid(inversion)->known;
     if (k == NULL)
         return;
-    const double bulk = along(slope, changes->row[0], 0, n);
+    const double bulk = along(slope, changes->row[0], n);
     mf_inversion_band_take_off_curve(changes->row[0], n, k, slope);
     for (size_t a = 0; a < n; a++)
         changes->row[1][a] = bulk * k[a];
-}
-
-/// The share of the squares of the changes that is more than errors, in Σ already, make of the ramp
-/// of a pair type: the largest of all.
-static double find_share(const struct inversion *inversion, const double *weight,
-                         const struct changes *changes, double *scratch) {
-    const struct potential_grid *grid = inversion_grid(inversion);
-    double share = 0;
-    for (size_t pair = 0, first = 0; pair < grid->pairs; first += grid->known_of[pair++]) {
-        const size_t end = first + grid->known_of[pair];
-        const double variance = spread(inversion, weight, first, end, scratch);
-        double squares = 0;
-        for (int k = 0; k < 2; k++)
-            squares += pow(along(weight, changes->row[k], first, end), 2);
-        if (squares > variance)
-            share = fmax(share, 1 - variance / squares);
-    }
-    return share;
 }
 
 /// Add the changes to Σ. What of them is not the move of Φ along A, as the data have it, is left if
@@ -182,19 +163,15 @@ static void add_changes(struct inversion *inversion, const double *weight,
                         const struct changes *changes, double *scratch) {
     struct inversion_band *band = &inversion->course.band;
     const size_t n = inversion_grid(inversion)->known;
-    const double share = find_share(inversion, weight, changes, scratch);
-    if (!(share > 0))
-        return;
-    const double variance = spread(inversion, weight, 0, n, scratch);
-    band->ramp.bulk_range =
-        sqrt(share) * fabs(along(inversion->state->bulk.slope, changes->row[0], 0, n));
+    const double variance = spread(inversion, weight, scratch);
+    band->ramp.bulk_range = fabs(along(inversion->state->bulk.slope, changes->row[0], n));
     for (int k = 0; k < 2; k++) {
-        const double *change = changes->row[k], part = along(weight, change, 0, n) / variance;
+        const double *change = changes->row[k], part = along(weight, change, n) / variance;
         for (size_t a = 0; a < n; a++)
-            band->beside_ramp[a] += share * pow(change[a] - part * scratch[a], 2);
+            band->beside_ramp[a] += pow(change[a] - part * scratch[a], 2);
     }
     for (int k = 0; k < 2; k++)
-        mf_inversion_band_add_square(inversion, share, changes->row[k]);
+        mf_inversion_band_add_square(inversion, 1, changes->row[k]);
 }
 
 enum status mf_inversion_band_add_range(struct inversion *inversion,
