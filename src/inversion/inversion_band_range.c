@@ -11,10 +11,14 @@
 /// A shorter range, in that of the fit.
 static const double shorter = 0.8;
 
-/// What lies beyond a range, over what its last fifth does, is the square of so many times the
-/// share of the slope: of that of a law twice; a fit comes to its end with some two thirds of it,
-/// as it makes up for what is cut off (screened Coulomb and star polymers).
-static const double of_slope = 3;
+/// The share s of the height of the last fifth that the slope of a law at its end makes is so many
+/// times that of a fit's potential, which makes up for what is cut off (screened Coulomb and star
+/// polymers); what is larger cannot be told.
+static const double of_slope = 1.5, most = 0.7;
+
+/// What lies beyond a range moves the pressure by s/(1 − s) times this, over what the last fifth
+/// does.
+static const double beyond_of_share = 1.5;
 
 static double range_of(const struct inversion *inversion) {
     const struct rdf_bins *bins = &inversion->problem->targets.bins;
@@ -46,7 +50,10 @@ static double find_beyond(const struct inversion *inversion, const double *step,
     }
     const double slope = y1 * s4 - y2 * s3, bend = y2 * s2 - y1 * s3; // times s2 s4 − s3²
     const double share = slope / (slope + bend * fifth);
-    return share > 0 ? fmin(1, pow(of_slope * share, 2)) : 0; // of no bins, NaN, none
+    if (!(share > 0)) // of no bins, NaN, none
+        return 0;
+    const double whole = fmin(most, of_slope * share);
+    return beyond_of_share * whole / (1 - whole);
 }
 
 /// What is left of each outer bin: of those of a potential that ends before them 0.

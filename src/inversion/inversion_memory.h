@@ -13,14 +13,15 @@ struct inversion_seen {
 };
 
 struct inversion_memory {
-    struct inversion_seen runs; ///< mean of the runs before, each by its length
+    struct inversion_seen runs; ///< mean of the runs before, and how much it counts
     struct inversion_seen last; ///< of the present run
 };
 
-/// Samples that count as one independent, of a run in which so many were found to: it and all runs
+/// Samples that count as one independent, of a run in which so many were found to: it and the runs
 /// before tell of one memory, each by its length, as what outlasts a short run is hardly seen by
-/// it, and what one run has found scatters as much as its replicas are few. With one correlation
-/// time τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is coth(h/2τ).
+/// it, and what one run has found scatters as much as its replicas are few. As the potential
+/// changes, each counts half of what the next one does. With one correlation time τ, samples h
+/// apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is coth(h/2τ).
 /// Tested: test_inversion_memory.
 /// @param[in] every  sweeps between samples
 /// @param[in] run    sweeps of each replica, in place of what was said of this run before
@@ -35,10 +36,12 @@ static inline double mf_inversion_memory_find(struct inversion_memory *memory, d
 
 /// The next run begins; that of a potential that was given up does not count.
 static inline void mf_inversion_memory_begin_run(struct inversion_memory *memory, bool given_up) {
+    static const double kept = 0.5;
     struct inversion_seen *runs = &memory->runs, *last = &memory->last;
     const double run = runs->run + last->run;
-    if (!given_up && last->run > 0)
-        *runs = (struct inversion_seen){(runs->run * runs->sweeps + last->run * last->sweeps) / run,
-                                        run};
+    if (!given_up && last->run > 0) {
+        runs->sweeps = (runs->run * runs->sweeps + last->run * last->sweeps) / run;
+        runs->run = kept * run;
+    }
     *last = (struct inversion_seen){0};
 }

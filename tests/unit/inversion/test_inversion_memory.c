@@ -27,14 +27,14 @@ static void test_a_memory_is_the_same_of_any_spacing(void **state) {
     }
 }
 
-static void test_runs_count_by_their_lengths(void **state) {
+static void test_runs_count_by_their_lengths_and_half_of_the_next(void **state) {
     (void)state;
     static const double every = 2, run[] = {4096, 512, 1024}, rho[] = {0.9, 0.7, 0.95};
     struct inversion_memory memory = {0};
     double sum = 0, length = 0;
     for (int k = 0; k < 3; k++) {
-        sum += run[k] * -2 / log(rho[k]); // twice the correlation time
-        length += run[k];
+        sum = sum / 2 + run[k] * -2 / log(rho[k]); // twice the correlation time
+        length = length / 2 + run[k];
         const double found =
             mf_inversion_memory_find(&memory, every, run[k], inefficiency(rho[k], every));
         assert_close(found, inefficiency(exp(-2 / (sum / length)), every), 1e-9);
@@ -70,7 +70,7 @@ static void test_independent_samples_have_no_memory(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_a_memory_is_the_same_of_any_spacing),
-        cmocka_unit_test(test_runs_count_by_their_lengths),
+        cmocka_unit_test(test_runs_count_by_their_lengths_and_half_of_the_next),
         cmocka_unit_test(test_a_run_that_was_lengthened_counts_once),
         cmocka_unit_test(test_what_was_given_up_is_forgotten),
         cmocka_unit_test(test_independent_samples_have_no_memory),
