@@ -12,7 +12,7 @@ names = "of[\"r\"] = \"{/:Italic r}\"; of[\"q\"] = \"{/:Italic q}\"; of[\"time\"
     "of[\"g\"] = \"" . g_label . "\"; of[\"S\"] = \"{/:Italic S}({/:Italic q})\"; " . \
     "of[\"msd\"] = \"MSD\"; of[\"vacf\"] = \"VACF\"; "
 # The name of column n and its unit, "q / lambda^{-1}" for "q[1/lambda]", "S" for "S[1]".
-header(n) = system(sprintf("awk -F '\t' 'BEGIN { " . names . "} /^#/ { sub(/^# */, \"\"); h = $%d; ", n) . \
+header(n) = system(sprintf("awk -F '\t' 'BEGIN { " . names . "} /^#/ && NF > 1 { sub(/^# */, \"\"); h = $%d; ", n) . \
     "gsub(/\\^2/, \"²\", h); gsub(/\\^3/, \"³\", h); " . \
     "gsub(/k_B\\.T_0/, \"ENERGY\", h); gsub(/[{}_@&~^\\\\]/, \" \", h); gsub(/ENERGY[.]?/, \"{/:Italic k}_B{/:Italic T}_0 \", h); sub(/\\[1\\]$/, \"\", h); " . \
     "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \

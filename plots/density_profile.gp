@@ -6,13 +6,13 @@
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 file = "density_profile.tsv"
-heads = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 1; n <= NF; n++) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }' " . file)
-drawn = system("awk -F '\t' '/^#/ { sub(/^# */, \"\"); for (n = 2; n <= NF; n++) if ($n ~ /^density/) printf \"%d \", n; exit }' " . file)
+heads = system("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); for (n = 1; n <= NF; n++) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }' " . file)
+drawn = system("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); for (n = 2; n <= NF; n++) if ($n ~ /^density/) printf \"%d \", n; exit }' " . file)
 mass = column_of(file, "mass_density")
 name_of(k) = words(drawn) == 1 ? "" : word(heads, int(word(drawn, k)))[9:*]
 axis = word(heads, 1)
 # Of "1/nm^3".
-unit = system("awk -F '\t' '/^#/ { u = $2; sub(/^[^[]*\\[1.[ ]*/, \"\", u); sub(/\\].*/, \"\", u); sub(/\\^/, \"^{-\", u); sub(/lambda/, \"{/:Italic λ}\", u); sub(/angstrom/, \"Å\", u); print u \"}\"; exit }' " . file)
+unit = system("awk -F '\t' '/^#/ && NF > 1 { u = $2; sub(/^[^[]*\\[1.[ ]*/, \"\", u); sub(/\\].*/, \"\", u); sub(/\\^/, \"^{-\", u); sub(/lambda/, \"{/:Italic λ}\", u); sub(/angstrom/, \"Å\", u); print u \"}\"; exit }' " . file)
 
 stats file using 1 name "X" nooutput
 highest = 0

@@ -8,9 +8,9 @@ load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 sizes = "molecule_sizes.tsv"
 turns = "end_to_end.tsv"
-kinds_of_molecules = system("awk -F '\t' '/^#/ { for (n = 2; n <= NF; n += 2) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }' " . turns)
+kinds_of_molecules = system("awk -F '\t' '/^#/ && NF > 1 { for (n = 2; n <= NF; n += 2) { sub(/\\[.*/, \"\", $n); printf \"%s \", $n } exit }' " . turns)
 count = words(kinds_of_molecules)
-unit = system("awk -F '\t' '/^#/ { h = $2; sub(/.*\\[/, \"\", h); sub(/\\^2.*/, \"\", h); gsub(/angstrom/, \"Å\", h); gsub(/lambda/, \"{/:Italic λ}\", h); print h; exit }' " . sizes)
+unit = system("awk -F '\t' '/^#/ && NF > 1 { h = $2; sub(/.*\\[/, \"\", h); sub(/\\^2.*/, \"\", h); gsub(/angstrom/, \"Å\", h); gsub(/lambda/, \"{/:Italic λ}\", h); print h; exit }' " . sizes)
 what(n) = first_of(n) eq "sweeps" ? "sweeps" : per_unit("{/:Italic t}", n, 1)
 
 top = 0

@@ -95,7 +95,7 @@ from(file) = " < '" . escape(file) . "'"
 has(file) = int(system("test -r '" . escape(file) . "' && echo 1 || echo 0"))
 
 # Number of the first column of that name, 0 if there is none; 1 if a column has a number but 0.
-column_of(file, name) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
+column_of(file, name) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); \
     for (k = 1; k <= NF; k++) { sub(/\\[.*/, \"\", $k); if ($k == \"%s\" && !found) found = k } } \
     END { print found + 0 }'", name) . from(file)))
 has_numbers(file, column) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '!/^#/ && $%d ~ /[1-9]/ { found = 1 } \
@@ -103,7 +103,7 @@ has_numbers(file, column) = !has(file) ? 0 : int(system(sprintf("awk -F '\t' '!/
 
 # What one of the column called `name`, with a physical unit as in "r[nm]", is in units of column n;
 # 1 where the table has no such column. in_units(…) chooses the axis's text by the same.
-factor_of(file, name, n) = real(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, \"\"); \
+factor_of(file, name, n) = real(system(sprintf("awk -F '\t' '/^#/ && NF > 1 { sub(/^# */, \"\"); \
     for (k = 1; k <= NF; k++) if ($k == \"%s\") found = k; next } \
     found && $%d + 0 != 0 { factor = $found / $%d } \
     END { printf \"%%.10g\", factor ? factor : 1 }'", name, n, n) . from(file)))
@@ -111,7 +111,7 @@ factor_of(file, name, n) = real(system(sprintf("awk -F '\t' '/^#/ { sub(/^# */, 
 # has that one.
 in_units(file, name, physical, reduced) = system(sprintf("awk -F '\t' -v name='%s' -v physical='%s' -v reduced='%s' '\
     BEGIN { label = reduced; split(name, wanted, \"[\") } \
-    /^#/ { sub(/^# */, \"\"); for (k = 1; k <= NF; k++) { \
+    /^#/ && NF > 1 { sub(/^# */, \"\"); for (k = 1; k <= NF; k++) { \
         if ($k == name) { label = physical; exit } \
         split($k, own, \"[\"); \
         if (own[1] == wanted[1] && own[2] && !seen++) { spoken = own[2]; sub(/\\]$/, \"\", spoken) } } } \

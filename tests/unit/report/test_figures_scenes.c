@@ -299,6 +299,21 @@ static void test_groups_of_a_fit_have_the_colours_of_its_rdf(void **state) {
     assert_false(figure_folders_print(folder, "bond_lengths", "xlink:href='#gpPt6'"));
 }
 
+static void test_axes_are_named_whatever_the_table_says_of_its_errors(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "errors_of_samples");
+    figure_folders_write(folder, "target.json", "{}");
+    figure_folders_write(folder, "rdf.tsv",
+                         "# errors of samples\n# r[nm]\tg[1]\tg_error[1]\n0.1\t0\t0\n0.3\t2\t0.1\n"
+                         "0.5\t1\t0.1\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "rdf"));
+    assert_true(figure_folders_print(folder, "rdf", "nm"));
+    assert_false(figure_folders_print(folder, "rdf", "errors"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_particles_are_discs_of_their_size_and_type),
@@ -311,6 +326,7 @@ int main(void) {
         cmocka_unit_test(test_figures_are_all_in_the_units_that_are_given),
         cmocka_unit_test(test_vectors_of_molecules_live_for_times_or_sweeps),
         cmocka_unit_test(test_groups_of_a_fit_have_the_colours_of_its_rdf),
+        cmocka_unit_test(test_axes_are_named_whatever_the_table_says_of_its_errors),
     };
     return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
 }
