@@ -84,7 +84,7 @@ struct measured_motion {
     struct measured_motion_plan plan;
     bool begun;
     bool has_vacf;
-    bool is_thermal; ///< velocities tell the temperature, if there are any; with or without times
+    bool is_thermal; ///< velocities tell the temperature: no bonds of fixed length hold beads
     bool has_velocities; ///< a frame has
     bool together;       ///< beads are all that moves: their momentum is conserved
     double interval;     ///< between frames [ps]

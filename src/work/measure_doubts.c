@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "work/measure_doubts.h"
 
+#include "base/memory.h"
 #include "trajectory/frame.h"
 
 #include <math.h>
+#include <string.h>
 
 /// Units are wrong more often than matter is so thin or dense; bins of 0.01 nm may
 /// then be more than memory holds.
@@ -63,4 +65,94 @@ void mf_measure_doubts(struct progress *progress, const struct trajectory_frame 
                        size_t beads, const char *units) {
     doubt_density(progress, frame, beads, units);
     doubt_box(progress, frame);
+}
+
+/// Where pairs are met most often [nm].
+static enum status find_peak(const struct rdf *rdf, double *r) {
+    const size_t bins = rdf->bins.count,
+                 all = bins * (size_t)mf_composition_pairs(&rdf->composition);
+    OWNED double *g = NULL;
+    double most = 0;
+    *r = 0;
+    TRY_ARRAY(g, all);
+    TRY(mf_rdf_result(rdf, 1, g, NULL));
+    for (size_t k = 0; k < all; k++)
+        if (g[k] > most) {
+            most = g[k];
+            *r = mf_rdf_bins_centre(&rdf->bins, k % bins);
+        }
+    return STATUS_OK;
+}
+
+/// Mean mass of all beads [u]; NAN if it is not known.
+static double mean_mass(const struct measure_result *result) {
+    const struct composition *const composition = &result->measured->pairs.composition;
+    double sum = 0, count = 0;
+    for (int type = 0; type < composition->types; type++) {
+        const double beads = (double)composition->count[type];
+        sum += beads * mf_measure_output_mass(result, type);
+        count += beads;
+    }
+    return sum / count;
+}
+
+/// Pairs that are as close to each other as in a liquid, which is as light as a gas, or heavier
+/// than any. Masses of 1 are those of reduced units.
+static enum status doubt_mass_density(struct progress *progress,
+                                      const struct measure_result *result) {
+    static const double of_liquids = 0.3, lightest = 0.05, heaviest = 30, reduced = 1.5;
+    static const double of_u = 1.66053907e-3; // [g/cm³] of 1 u/nm³
+    const double n = mf_measure_output_density(result), mass = mean_mass(result);
+    const double density = of_u * n * mass;
+    double r;
+    if (!(mass > reduced) || (density >= lightest && density <= heaviest))
+        return STATUS_OK;
+    TRY(find_peak(mf_measured_rdf(result->measured), &r));
+    if (n * r * r * r > of_liquids)
+        mf_progress_print(progress,
+                          "mesofit: warning: pairs are at %.3g nm, as close as in a liquid of so "
+                          "many beads, but it has %.2g g/cm^3: are places and box in another unit?",
+                          r, density);
+    return STATUS_OK;
+}
+
+/// Beads cannot move farther than their velocities carry them, and those of a liquid lose these
+/// after the way to a neighbour, or ten.
+static enum status doubt_times(struct progress *progress, const struct measure_result *result) {
+    static const double farthest = 1.5, slowest = 1e-3;
+    const struct measured_motion *const motion = &result->measured->motion;
+    const bool told = result->request->frames.options.time_step > 0;
+    OWNED double *columns = NULL;
+    if (!mf_measure_tables_have_motion(result) || !motion->has_vacf || motion->path.differences)
+        return STATUS_OK;
+    TRY(mf_motion_table(&motion->motion, &columns));
+    const size_t rows = (size_t)motion->motion.plan.lags + 1;
+    const double *const time = columns, *const msd = time + rows, *const vacf = msd + 2 * rows;
+    const double carried = sqrt(msd[1] / vacf[0]) / time[1];
+    const double natural = sqrt(vacf[0] / 3) / cbrt(mf_measure_output_density(result));
+    const double diffusion = mf_motion_result(&motion->motion, NULL).msd / natural;
+    if (carried > farthest)
+        mf_progress_print(progress,
+                          "mesofit: warning: from frame to frame beads move %.2g times as far as "
+                          "their velocities carry them in %.3g ps: %s",
+                          carried, time[1],
+                          told ? "is --file-time-step, in ps, that of the simulation?"
+                               : "are times, places or velocities in another unit?");
+    else if (told && diffusion < slowest)
+        mf_progress_print(progress,
+                          "mesofit: warning: D is %.1g of that of beads that lose their velocity "
+                          "at each neighbour, where liquids have more than 0.01 of it: is "
+                          "--file-time-step, in ps, that of the simulation? (solids look so, too)",
+                          diffusion);
+    return STATUS_OK;
+}
+
+enum status mf_measure_doubt_results(struct progress *progress,
+                                     const struct measure_result *result) {
+    if (result->measured->in_vacuum)
+        return STATUS_OK;
+    if (result->request->frames.options.units == NULL ||
+        strcmp(result->request->frames.options.units, "lj") != 0)
+        TRY(doubt_mass_density(progress, result));
+    return doubt_times(progress, result);
 }

@@ -56,7 +56,10 @@ double mf_measure_output_density(const struct measure_result *result) {
 /// [K]: as given, or the kinetic one; NAN if neither is known.
 double mf_measure_output_temperature(const struct measure_result *result) {
     const double given = result->request->temperature;
-    return isnan(given) ? mf_measured_mean(&result->measured->motion.temperature, NULL) : given;
+    const struct measured_motion *const motion = &result->measured->motion;
+    if (!isnan(given) || !motion->is_thermal)
+        return given;
+    return mf_measured_mean(&motion->temperature, NULL);
 }
 
 /// Mean mass of a type's beads [u]; NAN if it is not known.
@@ -135,7 +138,7 @@ static enum status write_kirkwood_buff(const struct measure_result *result,
 
 static void write_temperature(const struct measure_result *result, struct json_writer *writer) {
     const struct sample_series *const series = &result->measured->motion.temperature;
-    if (series->count == 0)
+    if (series->count == 0 || !result->measured->motion.is_thermal)
         return;
     double error;
     const double mean = mf_measured_mean(series, &error);

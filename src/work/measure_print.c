@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/number_text.h"
 #include "io/units.h"
+#include "work/measure_doubts.h"
 
 #include <math.h>
 #include <unistd.h>
@@ -289,15 +290,19 @@ static const char *without_temperature(const struct measure_result *result) {
 }
 
 /// A temperature that is given, and that of the velocities: they are those of whole beads, so that
-/// constraints within beads do no harm, but those between beads make it too low.
+/// constraints within beads do no harm, but those between beads make it too low, and of parts of
+/// molecules any.
 static void print_temperature(struct progress *progress, const struct measure_result *result) {
-    static const double tolerance = 0.03, errors = 4;
-    const struct sample_series *const kinetic = &result->measured->motion.temperature;
+    static const double tolerance = 0.03, errors = 4, held = 0.1;
+    const struct measured_motion *const motion = &result->measured->motion;
+    const struct sample_series *const kinetic = &motion->temperature;
     double error;
     const double given = result->request->temperature, mean = mf_measured_mean(kinetic, &error);
+    const bool off = kinetic->count > 0 && fabs(given - mean) > tolerance * given &&
+                     !(fabs(given - mean) <= errors * error);
     char text[NUMBER_TEXT_SIZE];
     mf_number_text(mean, error, text);
-    if (isnan(given) && kinetic->count == 0)
+    if (isnan(given) && (kinetic->count == 0 || !motion->is_thermal))
         mf_progress_print(
             progress,
             "unknown temperature (%s): give it by --temperature, or in \"scene\" of target.json",
@@ -307,8 +312,14 @@ static void print_temperature(struct progress *progress, const struct measure_re
                           "T = %s K by the velocities of the beads; one that is known is given by "
                           "--temperature",
                           text);
-    else if (kinetic->count > 0 && fabs(given - mean) > tolerance * given &&
-             !(fabs(given - mean) <= errors * error))
+    else if (!motion->is_thermal && off && (mean > given || mean < held * given))
+        mf_progress_print(
+            progress,
+            "mesofit: warning: --temperature %g, but the velocities of the beads have %s K, which "
+            "bonds of fixed length can only make less: is it in kelvin, and are the file's units "
+            "right?",
+            given, text);
+    else if (motion->is_thermal && off)
         mf_progress_print(
             progress,
             "mesofit: warning: --temperature %g, but the velocities of the beads have "
@@ -393,6 +404,7 @@ static void print_all(struct progress *progress, const struct measure_result *re
 
 enum status mf_measure_print(struct progress *progress, const struct measure_result *result) {
     print_all(progress, result);
+    TRY(mf_measure_doubt_results(progress, result));
     TRY(print_doubtful_bonds(progress, result));
     return print_constraints(progress, result);
 }

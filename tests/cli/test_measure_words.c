@@ -105,6 +105,52 @@ static void test_boxes_that_are_not_those_of_the_atoms(void **state) {
     }
 }
 
+/// Argon on a lattice that hardly moves from frame to frame, 4 Å apart, in LAMMPS's units real.
+static void write_solid(struct temporary_folder *folder) {
+    enum { SIDE = 4 };
+    static char text[TEXT];
+    size_t length = 0;
+    unsigned seed = 7;
+    for (int t = 0; t < FRAMES; t++) {
+        length += (size_t)snprintf(text + length, TEXT - length,
+                                   "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX "
+                                   "BOUNDS pp pp pp\n0 16\n0 16\n0 16\nITEM: ATOMS id type mass x "
+                                   "y z vx vy vz\n",
+                                   t, SIDE * SIDE * SIDE);
+        for (int k = 0; k < SIDE * SIDE * SIDE; k++)
+            length += (size_t)snprintf(
+                text + length, TEXT - length, "%d 1 39.948 %g %g %g %g %g %g\n", k + 1,
+                4 * (k % SIDE) + 0.1 * chance(&seed), 4 * (k / SIDE % SIDE) + 0.1 * chance(&seed),
+                4.0 * (k / SIDE / SIDE) + 0.1 * chance(&seed), 2.4988e-3 * normal(&seed),
+                2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed));
+    }
+    temporary_folder_write(folder, "a.dump", text, length);
+}
+
+static void test_motion_that_velocities_contradict(void **state) {
+    write_argon(*state); // anywhere in each frame
+    MEASURE("--file-units", "real", "--file-time-step", "0.01", "--temperature", "300");
+    assert_contains(result.err, "times as far as their velocities carry them in 0.01 ps: is "
+                                "--file-time-step, in ps, that of the simulation?");
+    write_solid(*state);
+    MEASURE("--file-units", "real", "--file-time-step", "100", "--temperature", "300");
+    assert_contains(result.err,
+                    " of that of beads that lose their velocity at each neighbour, where "
+                    "liquids have more than 0.01 of it: is --file-time-step");
+}
+
+static void test_pairs_as_close_as_in_a_liquid_that_is_as_light_as_a_gas(void **state) {
+    write_solid(*state);
+    MEASURE("--file-units", "nm-ps", "--static", "--temperature", "300");
+    assert_contains(result.err, "warning: pairs are at 4");
+    assert_contains(result.err, " nm, as close as in a liquid of so many beads, but it has 0.001 "
+                                "g/cm^3: are places and box in another unit?");
+    MEASURE("--file-units", "real", "--static", "--temperature", "300");
+    assert_without("as close as in a liquid");
+    MEASURE("--file-units", "lj", "--static", "--temperature", "300");
+    assert_without("as close as in a liquid");
+}
+
 /// Frames are read again where a later box is too small for the range that the first one has.
 static void test_what_the_first_frame_shows_is_told_once(void **state) {
     static const char words[] = "in its first frame atoms fill ";
@@ -211,16 +257,19 @@ static void test_the_next_command_is_told(void **state) {
     cmocka_unit_test_setup_teardown(name, small_inputs_enter_without_gnuplot, small_inputs_leave)
 
 int main(void) {
-    const struct CMUnitTest tests[] = {TEST(test_a_temperature_that_velocities_have_not),
-                                       TEST(test_units_that_cannot_be),
-                                       TEST(test_boxes_that_are_not_those_of_the_atoms),
-                                       TEST(test_what_the_first_frame_shows_is_told_once),
-                                       TEST(test_motion_of_rows_that_may_be_any_atoms),
-                                       TEST(test_velocities_without_times),
-                                       TEST(test_a_temperature_that_nothing_tells),
-                                       TEST(test_types_by_their_numbers),
-                                       TEST(test_types_by_their_names),
-                                       TEST(test_names_with_blanks_are_quoted),
-                                       TEST(test_the_next_command_is_told)};
+    const struct CMUnitTest tests[] = {
+        TEST(test_a_temperature_that_velocities_have_not),
+        TEST(test_units_that_cannot_be),
+        TEST(test_boxes_that_are_not_those_of_the_atoms),
+        TEST(test_motion_that_velocities_contradict),
+        TEST(test_pairs_as_close_as_in_a_liquid_that_is_as_light_as_a_gas),
+        TEST(test_what_the_first_frame_shows_is_told_once),
+        TEST(test_motion_of_rows_that_may_be_any_atoms),
+        TEST(test_velocities_without_times),
+        TEST(test_a_temperature_that_nothing_tells),
+        TEST(test_types_by_their_numbers),
+        TEST(test_types_by_their_names),
+        TEST(test_names_with_blanks_are_quoted),
+        TEST(test_the_next_command_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
