@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { EXPLAIN, RANKS, TARGET, DENSITY, TEMPERATURE, FRICTION, ENGINE, LIVE };
@@ -110,6 +111,12 @@ static enum status run_rdf(const char *file, const char *rdf, const struct comma
                            const struct json_word *words, size_t count) {
     static const char text[] = "{\"target\": {\"rdf\": {\"file\": \"rdf.tsv\"}}}";
     const struct memory_file unwritten = {.name = file, .text = text};
+    struct stat is;
+    if (stat(line->own[TARGET], &is) == 0 && S_ISREG(is.st_mode))
+        return mf_status_fail(STATUS_BAD_INPUT,
+                              "--target %s: a file: give the folder that it is in, or begin with "
+                              "mesofit fit %s",
+                              line->own[TARGET], line->own[TARGET]);
     if (access(rdf, R_OK) != 0)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "--target: %s not found, nor rdf.tsv for use with --density", file);

@@ -5,6 +5,7 @@
 #include "io/text_file.h"
 
 #include <cJSON.h>
+#include <ctype.h>
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -100,12 +101,27 @@ static enum status fail_at(const char *file, const char *text, const char *at,
                           place.column, expected, found);
 }
 
+/// Whether the value of a key and the digits behind its comma stand before, as in "key": 298,5.
+static bool is_after_decimal_comma(const char *text, const char *at) {
+    const char *first = find_before(text, at);
+    int commas = 0;
+    if (first == NULL || !isdigit((unsigned char)*first))
+        return false;
+    for (; first > text && (isdigit((unsigned char)*first) || *first == ','); first--)
+        commas += *first == ',';
+    if (isspace((unsigned char)*first))
+        first = find_before(text, first);
+    return commas == 1 && first && *first == ':';
+}
+
 /// In words, by where cJSON has stopped and what stands before that.
 static enum status fail_where_it_ended(const char *file, const char *text, const char *end) {
     if (is_open_text(text, end))
         return fail_at(file, text, end - 1, "a text with a '\"' at its end, too");
     if (*end == '\\')
         return fail_at(file, text, end, "an escape such as \\n or \\u00e9");
+    if (is_after_decimal_comma(text, end))
+        return fail_at(file, text, end, "a key after the comma (a decimal comma? JSON has points)");
     const bool after_key = is_after_key(text, end);
     const char *at = after_key ? end - 1 : end, *before = find_before(text, at);
     if (before && *before == ',' && strchr("}]", *at)) // also the end of the file

@@ -305,6 +305,9 @@ static enum status draw_measured(const char *folder, const char *plots, size_t *
 }
 
 static enum status check_access(const char *folder) {
+    struct stat is;
+    if (stat(folder, &is) == 0 && !S_ISDIR(is.st_mode))
+        return mf_status_fail(STATUS_BAD_INPUT, "%s: a file: give the folder of a run", folder);
     return access(folder, X_OK) == 0 ? STATUS_OK
                                      : mf_status_fail(STATUS_IO, "%s: %s", folder, strerror(errno));
 }

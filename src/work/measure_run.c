@@ -106,6 +106,18 @@ static enum status read_molecules(struct run *run) {
                                      &run->structure.structure, request->map != NULL);
 }
 
+/// What is in a trajectory itself is read before its frames, from its begin.
+static enum status refuse_pipe(const struct run *run) {
+    const char *const file = run->request->frames.file[0];
+    struct stat is;
+    if (run->request->structure || stat(file, &is) != 0 || !S_ISFIFO(is.st_mode))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: a pipe is read once: say what its atoms are by -s FILE, or save it "
+                          "to a file first",
+                          file);
+}
+
 /// Names, residues and masses are of -s alone, if it is given.
 static enum status open_structure(struct run *run) {
     const char *const given = run->request->structure;
@@ -128,6 +140,7 @@ static enum status open_structure(struct run *run) {
 /// What the atoms are, which of them are beads, and what molecules there may be.
 static enum status find_beads(struct run *run) {
     const struct measure_request *const request = run->request;
+    TRY(refuse_pipe(run));
     TRY(open_structure(run));
     TRY(read_molecules(run));
     TRY(request->molecules && !request->map ? take_atoms(run) : map_atoms(run));

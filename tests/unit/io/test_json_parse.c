@@ -52,6 +52,8 @@ static void test_json_parse_gives_the_place_when_the_text_is_malformed(void **st
     assert_malformed("{\"a\": 1,\n",
                      ":2:1: expected something after the last comma, found the end");
     assert_malformed("{\"a\" 1}", ":1:6: expected ',', ':' or a closing bracket");
+    assert_malformed("{\"a\": 298,5}", ":1:12: expected a key after the comma (a decimal comma?");
+    assert_malformed("{\"a\": [298,5}", " or a closing bracket");
     assert_malformed("{\"a\": NaN}", ":1:7: expected a value, found 'N'");
     assert_malformed("{\"ä\": nul}", ":1:7: expected a value, found 'n'");
     assert_malformed("[1, 2 3]", ":1:7: expected ',', ':' or a closing bracket");
