@@ -156,11 +156,20 @@ static bool waits(const struct sampling *sampling) {
            (unequilibrated->beside_sizes || may_be_last(sampling));
 }
 
+/// Sweeps of a replica for the least samples of a potential.
+static uint64_t first_sweeps(const struct sampling *sampling) {
+    const struct replicas_plan min = plan(sampling->inversion, sampling->state, 1);
+    const int64_t usual = sampling->state->parameters->equilibration;
+    return replicas_plan_sweeps(&min) +
+           (uint64_t)(min.equilibration < usual ? min.equilibration : usual);
+}
+
 /// Whether samples that have not settled have cost too much. A step may lead to where nothing
 /// settles, as into two phases: half of it is tried when to wait has cost as much as all before it,
 /// so that where each potential is slow, the next one may cost twice that.
-static bool has_cost_enough(const struct sampling *sampling, uint64_t first) {
+static bool has_cost_enough(const struct sampling *sampling) {
     const struct inversion_state *state = sampling->state;
+    const uint64_t first = first_sweeps(sampling);
     const uint64_t before = state->work.sweeps / (uint64_t)state->parameters->replicas;
     const uint64_t least = MIN_TIMES * first;
     return sampling->sweeps > MAX_TIMES * first ||
@@ -175,11 +184,6 @@ static bool is_hopeless(struct sampling *sampling) {
     const struct inversion *inversion = sampling->inversion;
     const struct targets *targets = &sampling->state->problem->targets;
     struct inversion_assessment *assessment = &sampling->state->assessment;
-    const struct replicas_plan min = plan(inversion, sampling->state, 1);
-    const int64_t settling = min.equilibration < sampling->state->parameters->equilibration
-                                 ? min.equilibration
-                                 : sampling->state->parameters->equilibration;
-    const uint64_t first = replicas_plan_sweeps(&min) + (uint64_t)settling;
     const bool farther = sampling->before[TARGET_RDF].count > 0 &&
                          mf_inversion_assessment_noises(assessment, targets, assessment->distance) >
                              mf_inversion_assessment_noises(assessment, targets, sampling->before);
@@ -187,7 +191,7 @@ static bool is_hopeless(struct sampling *sampling) {
     const bool lost =
         other || (inversion->states == 1 && !mf_inversion_is_worth_keeping(inversion, assessment));
     const bool worse = sampling->state->basis.count == 0 && farther && lost;
-    assessment->unequilibrated.for_long = has_cost_enough(sampling, first);
+    assessment->unequilibrated.for_long = has_cost_enough(sampling);
     memcpy(sampling->before, assessment->distance, sizeof sampling->before);
     return assessment->unequilibrated.for_long || worse;
 }
@@ -217,6 +221,12 @@ static bool needs_samples(struct sampling *sampling) {
     doubling->number = before + 1;
     doubling->max = MAX_DOUBLINGS;
     return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;
+}
+
+/// Whether more samples are to tell the potential from the best one.
+static bool judges_early(const struct sampling *sampling) {
+    return sampling->progress.doubling.number <= MAX_DOUBLINGS && !has_cost_enough(sampling) &&
+           mf_inversion_judges_early(sampling->inversion, sampling->state);
 }
 
 /// Take samples by the plan, all of them or as many again.
@@ -275,16 +285,12 @@ static enum status sample_all(struct sampling *sampling) {
     sampling->progress.done = sampling->progress.total = (uint64_t)state->parameters->replicas;
     for (;;) {
         const uint64_t before = sampling->sweeps;
-        if (waits(sampling) && is_hopeless(sampling))
+        const bool wait = waits(sampling), few = !wait && needs_samples(sampling);
+        if (wait ? is_hopeless(sampling) : !few && !judges_early(sampling))
             return STATUS_OK;
-        if (waits(sampling)) {
-            TRY(settle(sampling));
+        TRY(wait ? settle(sampling) : take(sampling, true));
+        if (!few)
             sampling->waited += sampling->sweeps - before;
-        } else if (needs_samples(sampling)) {
-            TRY(take(sampling, true));
-        } else {
-            return STATUS_OK;
-        }
     }
 }
 

@@ -248,7 +248,7 @@ static void print_distance(struct progress *to, const struct fit_file *fit,
     const size_t known = values_of(&fit->problem.compared.target[kind]);
     const struct noises noises = noises_of(fit, v, kind);
     char rms[NUMBER_TEXT_SIZE], name[UNITS_NAME_SIZE] = "", of[96] = "", with[OF_FIT_SIZE];
-    if (factor != 1)
+    if (factor != 1 || mf_units_known(&fit->scene.units)) // of numbers ""
         mf_units_suffix(&fit->scene.units, unit, name);
     mf_number_text(factor * distance->rms, factor * v->distance_error[kind], rms);
     if (distance->count < known)
