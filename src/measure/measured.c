@@ -223,7 +223,8 @@ enum status mf_measured_begin(struct measured *measured, const struct measured_p
     }
     if (mapping->beads < 2)
         CHECK(mf_status_fail(STATUS_BAD_INPUT,
-                             "%s: there is a single bead, and a measurement is of pairs of them",
+                             "%s: there is a single bead, and a measurement is of pairs of them (a "
+                             "residue, by name and number, is a bead unless --map says more)",
                              first->file));
     CHECK(find_composition(mapping, &measured->pairs.composition));
     CHECK(find_molecules(measured));

@@ -257,15 +257,23 @@ static enum status note_beads(struct mapping *mapping) {
     size_t k = 0;
     for (size_t type = 0; type < mapping->types; type++) {
         const size_t begin = k;
-        bool same = true;
-        for (; k < mapping->beads && mapping->bead[k].type == type; k++)
-            same = same && mapping->bead[k].count == mapping->bead[begin].count;
+        size_t least = mapping->bead[begin].count, most = least;
+        for (; k < mapping->beads && mapping->bead[k].type == type; k++) {
+            least = mapping->bead[k].count < least ? mapping->bead[k].count : least;
+            most = mapping->bead[k].count > most ? mapping->bead[k].count : most;
+        }
         const struct mapping_bead *first = &mapping->bead[begin];
         char mass[64] = "of unknown mass: nothing names residues and atoms (-s)";
         if (isfinite(first->mass))
             snprintf(mass, sizeof mass, "the first of %.6g u", first->mass);
-        TRY(note(mapping, "%s: %zu beads of %s%zu atom%s, %s", mapping->type_name[type], k - begin,
-                 same ? "" : "other than ", first->count, first->count == 1 ? "" : "s", mass));
+        if (least < most)
+            TRY(note(mapping,
+                     "mesofit: warning: %s: %zu beads of %zu to %zu atoms: a bead is a residue "
+                     "(name and number) unless --map says more: does the file number them?",
+                     mapping->type_name[type], k - begin, least, most));
+        else
+            TRY(note(mapping, "%s: %zu beads of %zu atom%s, %s", mapping->type_name[type],
+                     k - begin, most, most == 1 ? "" : "s", mass));
     }
     return STATUS_OK;
 }
