@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { ATOMS = 60, FRAMES = 30, TEXT = 1 << 20 };
 
@@ -243,6 +244,15 @@ static void test_names_with_blanks_are_quoted(void **state) {
     assert_contains(result.err, "\"gmx editconf -f 'it'\\''s mine.tpr' -o conf.gro\"");
 }
 
+static void test_a_pipe_says_not_what_its_atoms_are(void **state) {
+    (void)state;
+    assert_int_equal(mkfifo("pipe.dump", 0600), 0);
+    RUN_PROGRAM(&result, "measure", "pipe.dump", "--file-units", "real", "-o", "out");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err,
+                    "pipe.dump: a pipe is read once: say what its atoms are by -s FILE");
+}
+
 static void test_the_next_command_is_told(void **state) {
     write_argon(*state);
     MEASURE("--file-units", "real", "--temperature", "300", "--static");
@@ -270,6 +280,7 @@ int main(void) {
         TEST(test_types_by_their_numbers),
         TEST(test_types_by_their_names),
         TEST(test_names_with_blanks_are_quoted),
+        TEST(test_a_pipe_says_not_what_its_atoms_are),
         TEST(test_the_next_command_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

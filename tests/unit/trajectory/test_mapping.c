@@ -72,6 +72,25 @@ static void test_default_map_is_a_bead_a_residue(void **state) {
     clear();
 }
 
+/// Neighbouring rows of one name and number are one residue, as where a file numbers none.
+static void test_residues_of_one_name_and_other_numbers_of_atoms_are_warned_of(void **state) {
+    (void)state;
+    make_structure();
+    for (int k = 0; k < ATOMS; k++) {
+        structure.atom[k].residue_number = 1;
+        if (k >= 6) // the water, the sodium ion and the ligand
+            snprintf(structure.atom[k].residue_name, STRUCTURE_NAME, "%s", k == 8 ? "MET" : "SOL");
+    }
+    assert_ok(mf_structure_number_residues(&structure));
+    assert_ok(mf_mapping_plan_default(&plan));
+    assert_ok(mf_mapping_init(&mapping, &plan, &structure));
+    mf_mapping_plan_clear(&plan);
+    assert_contains((const char *)mapping.notes.data,
+                    "mesofit: warning: MET: 2 beads of 1 to 6 atoms: a bead is a residue (name and "
+                    "number) unless --map says more: does the file number them?\n");
+    clear();
+}
+
 /// Beads stand by types, whatever the order of the atoms; centres are Σ m r/Σ m, or Σ r/n.
 static void test_map_has_several_beads_a_residue(void **state) {
     struct trajectory_frame frame = {.has_box = false}, beads = {0};
@@ -364,6 +383,7 @@ static void test_types_of_the_file_are_types_of_beads(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_default_map_is_a_bead_a_residue),
+        cmocka_unit_test(test_residues_of_one_name_and_other_numbers_of_atoms_are_warned_of),
         TEST(test_map_has_several_beads_a_residue),
         TEST(test_molecules_are_made_whole_in_tilted_boxes),
         TEST(test_map_is_refused_when_it_does_not_fit_the_atoms),
