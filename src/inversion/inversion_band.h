@@ -114,6 +114,9 @@ void mf_inversion_band_take_off_curve(double *x, size_t n, const double *v, cons
 enum status mf_inversion_band_take_conventions_off(const struct inversion *inversion,
                                                    double *covariance, double *x) MUST_USE;
 
+/// out = Σ v, shape [known]; returns v·Σ v.
+double mf_inversion_band_spread(const struct inversion *inversion, const double *v, double *out);
+
 /// Σ ← Σ + factor u uᵀ.
 void mf_inversion_band_add_square(struct inversion *inversion, double factor, const double *u);
 

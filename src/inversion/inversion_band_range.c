@@ -125,20 +125,6 @@ done:
     return status;
 }
 
-/// out = Σ w; returns w·Σ w.
-static double spread(const struct inversion *inversion, const double *weight, double *out) {
-    const size_t n = inversion_grid(inversion)->known;
-    const double *covariance = inversion->course.band.covariance;
-    double sum = 0;
-    for (size_t a = 0; a < n; a++) {
-        out[a] = 0;
-        for (size_t b = 0; b < n; b++)
-            out[a] += covariance[a * n + b] * weight[b];
-        sum += weight[a] * out[a];
-    }
-    return sum;
-}
-
 static double along(const double *weight, const double *change, size_t n) {
     double sum = 0;
     for (size_t a = 0; a < n; a++)
@@ -170,7 +156,7 @@ static void add_changes(struct inversion *inversion, const double *weight,
                         const struct changes *changes, double *scratch) {
     struct inversion_band *band = &inversion->course.band;
     const size_t n = inversion_grid(inversion)->known;
-    const double variance = spread(inversion, weight, scratch);
+    const double variance = mf_inversion_band_spread(inversion, weight, scratch);
     band->ramp.bulk_range = fabs(along(inversion->state->bulk.slope, changes->row[0], n));
     for (int k = 0; k < 2; k++) {
         const double *change = changes->row[k], part = along(weight, change, n) / variance;
