@@ -54,7 +54,7 @@ static void print_diffusion(struct progress *progress, const struct measure_resu
             "mesofit: warning: frames are too far apart for D by the VACF, %.3g%s: velocities lose "
             "%.0f %% of their correlation from one to the next",
             mf_units_factor(&result->units, "lambda^2/tau") * s.green_kubo,
-            mf_units_suffix(&result->units, "lambda^2/tau", unit), 100 * s.vacf_drop);
+            mf_units_suffix(&result->units, "lambda^2/tau", unit), 100 * fmin(1, s.vacf_drop));
 }
 
 /// A file of the same name beside it, as `simulate` and other programs write it: into `found`.
