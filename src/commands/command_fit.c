@@ -114,9 +114,8 @@ static enum status run_rdf(const char *file, const char *rdf, const struct comma
     struct stat is;
     if (stat(line->own[TARGET], &is) == 0 && S_ISREG(is.st_mode))
         return mf_status_fail(STATUS_BAD_INPUT,
-                              "--target %s: a file: give the folder that it is in, or begin with "
-                              "mesofit fit %s",
-                              line->own[TARGET], line->own[TARGET]);
+                              "--target %s: a file: give the folder of a measurement",
+                              line->own[TARGET]);
     if (access(rdf, R_OK) != 0)
         return mf_status_fail(STATUS_BAD_INPUT,
                               "--target: %s not found, nor rdf.tsv for use with --density", file);

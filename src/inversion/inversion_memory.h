@@ -20,9 +20,10 @@ struct inversion_memory {
 /// Samples that count as one independent, of a run in which so many were found to: it and the runs
 /// before tell of one memory, each by its length, as what outlasts a short run is hardly seen by
 /// it, and what one run has found scatters as much as its replicas are few. As the potential
-/// changes, each counts half of what the next one does. With one correlation time τ, samples h
-/// apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is coth(h/2τ).
-/// Tested: test_inversion_memory.
+/// changes, each counts half of what the next one does; and what a run has found itself counts as
+/// half of it at least, as a few replicas tell it within a factor of two. With one correlation time
+/// τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is coth(h/2τ). Tested:
+/// test_inversion_memory.
 /// @param[in] every  sweeps between samples
 /// @param[in] run    sweeps of each replica, in place of what was said of this run before
 static inline double mf_inversion_memory_find(struct inversion_memory *memory, double every,
@@ -31,7 +32,7 @@ static inline double mf_inversion_memory_find(struct inversion_memory *memory, d
     memory->last = (struct inversion_seen){found > 1 ? every / atanh(1 / found) : 0, run};
     const double mean =
         (before->run * before->sweeps + run * memory->last.sweeps) / (before->run + run);
-    return mean > 0 ? 1 / tanh(every / mean) : 1;
+    return fmax(mean > 0 ? 1 / tanh(every / mean) : 1, 0.5 * found);
 }
 
 /// The next run begins; that of a potential that was given up does not count.

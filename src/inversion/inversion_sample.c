@@ -223,9 +223,10 @@ static bool needs_samples(struct sampling *sampling) {
     return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;
 }
 
-/// Whether more samples are to tell the potential from the best one.
+/// Whether more samples are to tell the potential from the best one, where it is off.
 static bool judges_early(const struct sampling *sampling) {
     return sampling->progress.doubling.number <= MAX_DOUBLINGS && !has_cost_enough(sampling) &&
+           !may_be_last(sampling) &&
            mf_inversion_judges_early(sampling->inversion, sampling->state);
 }
 

@@ -105,9 +105,9 @@ static enum status fail_at(const char *file, const char *text, const char *at,
 static bool is_after_decimal_comma(const char *text, const char *at) {
     const char *first = find_before(text, at);
     int commas = 0;
-    if (first == NULL || !isdigit((unsigned char)*first))
+    if (first == NULL || !isdigit((unsigned char)*first) || *at == ':')
         return false;
-    for (; first > text && (isdigit((unsigned char)*first) || *first == ','); first--)
+    for (; first > text && (isdigit((unsigned char)*first) || strchr(",-.", *first)); first--)
         commas += *first == ',';
     if (isspace((unsigned char)*first))
         first = find_before(text, first);

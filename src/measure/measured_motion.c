@@ -280,7 +280,8 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
     struct motion_plan lags;
     *motion = (struct measured_motion){.plan = *plan, .temperature.columns = 1};
     CHECK(copy_masses(motion, mapping));
-    motion->is_thermal = !mapping->broken && mapping->beads > 1;
+    motion->is_kinetic = motion->mass && !mapping->off_mass && mapping->beads > 1;
+    motion->is_thermal = motion->is_kinetic && !mapping->broken;
     motion->together = are_all(mapping);
     if (plan->leave_out || !are_timed(first))
         goto done;
@@ -383,7 +384,7 @@ enum status mf_measured_motion_add(struct measured_motion *motion,
     if (motion->begun)
         TRY(follow(motion, beads, configuration));
     motion->has_velocities = motion->has_velocities || beads->has_velocities;
-    if (beads->has_velocities && motion->mass && beads->atoms > 1) {
+    if (beads->has_velocities && motion->is_kinetic) {
         const double temperature = find_temperature(motion, beads);
         TRY(mf_sample_series_add(&motion->temperature, &temperature));
     }

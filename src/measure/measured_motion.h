@@ -84,7 +84,8 @@ struct measured_motion {
     struct measured_motion_plan plan;
     bool begun;
     bool has_vacf;
-    bool is_thermal; ///< velocities tell the temperature: no bonds of fixed length hold beads
+    bool is_kinetic; ///< beads have masses, and move as these do
+    bool is_thermal; ///< velocities tell the temperature, too: no bonds of fixed length hold beads
     bool has_velocities; ///< a frame has
     bool together;       ///< beads are all that moves: their momentum is conserved
     double interval;     ///< between frames [ps]

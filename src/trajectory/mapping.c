@@ -224,7 +224,9 @@ static enum status weigh_bead(struct mapping *mapping, const struct mapping_plan
         if (by_mass)
             weight[i] = bead->count > 1 ? mass : 1;
     }
-    mapping->broken = mapping->broken || !moves_with_mass(mapping, plan, structure, bead, reported);
+    mapping->off_mass =
+        mapping->off_mass || !moves_with_mass(mapping, plan, structure, bead, reported);
+    mapping->broken = mapping->broken || mapping->off_mass;
     const bool without = bead->mass == 0;
     for (size_t i = 0; by_mass && bead->count > 1 && i < bead->count; i++)
         weight[i] = without ? 1 / (double)bead->count : weight[i] / bead->mass;

@@ -24,6 +24,7 @@ struct mapping {
     struct bytes notes;  ///< lines that tell what was made and what was guessed, a text
     bool broken; ///< a bead is a part of its residue or molecule, or not its centre of mass: bonds
                  ///< of fixed length hold it, and its velocity does not tell the temperature
+    bool off_mass; ///< a bead is not its centre of mass: its velocity is not that of its mass
 };
 
 /// Find the beads of a plan among atoms. Masses are those of the plan, of the file, or else of

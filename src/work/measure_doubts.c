@@ -67,12 +67,13 @@ void mf_measure_doubts(struct progress *progress, const struct trajectory_frame 
     doubt_box(progress, frame);
 }
 
-/// Where pairs are met most often [nm].
+/// Where g(r) of a pair type has the highest peak of all [nm]; 0: none has any.
 static enum status find_peak(const struct rdf *rdf, double *r) {
-    const size_t bins = rdf->bins.count,
-                 all = bins * (size_t)mf_composition_pairs(&rdf->composition);
+    static const double least = 1.5;
+    const size_t bins = rdf->bins.count;
+    const size_t all = bins * (size_t)mf_composition_pairs(&rdf->composition);
     OWNED double *g = NULL;
-    double most = 0;
+    double most = least;
     *r = 0;
     TRY_ARRAY(g, all);
     TRY(mf_rdf_result(rdf, 1, g, NULL));
@@ -96,11 +97,12 @@ static double mean_mass(const struct measure_result *result) {
     return sum / count;
 }
 
-/// Pairs that are as close to each other as in a liquid, which is as light as a gas, or heavier
-/// than any. Masses of 1 are those of reduced units.
+/// Beads that meet as in a liquid of so many, which is a hundred times lighter than any, or
+/// heavier: angstrom taken for nm make a thousand times. Masses of some u may be those of reduced
+/// units.
 static enum status doubt_mass_density(struct progress *progress,
                                       const struct measure_result *result) {
-    static const double of_liquids = 0.3, lightest = 0.05, heaviest = 30, reduced = 1.5;
+    static const double of_liquids = 0.3, lightest = 0.01, heaviest = 30, reduced = 6;
     static const double of_u = 1.66053907e-3; // [g/cm³] of 1 u/nm³
     const double n = mf_measure_output_density(result), mass = mean_mass(result);
     const double density = of_u * n * mass;
@@ -116,34 +118,32 @@ static enum status doubt_mass_density(struct progress *progress,
     return STATUS_OK;
 }
 
-/// Beads cannot move farther than their velocities carry them, and those of a liquid lose these
-/// after the way to a neighbour, or ten.
+/// Beads cannot move farther than their velocities carry them; and where these are still much alike
+/// from one frame to the next, not much less far.
 static enum status doubt_times(struct progress *progress, const struct measure_result *result) {
-    static const double farthest = 1.5, slowest = 1e-3;
+    static const double farthest = 1.5, nearest = 0.05, errors = 3;
     const struct measured_motion *const motion = &result->measured->motion;
-    const bool told = result->request->frames.options.time_step > 0;
     OWNED double *columns = NULL;
-    if (!mf_measure_tables_have_motion(result) || !motion->has_vacf || motion->path.differences)
+    if (!mf_measure_tables_have_motion(result) || !motion->has_vacf || motion->path.differences ||
+        result->frames->unsorted || motion->path.far > 0)
         return STATUS_OK;
     TRY(mf_motion_table(&motion->motion, &columns));
     const size_t rows = (size_t)motion->motion.plan.lags + 1;
     const double *const time = columns, *const msd = time + rows, *const vacf = msd + 2 * rows;
+    const double *const error = vacf + rows;
+    if (!(vacf[0] > 0))
+        return STATUS_OK;
     const double carried = sqrt(msd[1] / vacf[0]) / time[1];
-    const double natural = sqrt(vacf[0] / 3) / cbrt(mf_measure_output_density(result));
-    const double diffusion = mf_motion_result(&motion->motion, NULL).msd / natural;
-    if (carried > farthest)
+    const bool alike = !(vacf[1] <= errors * error[1]); // or it is not known
+    const bool less = alike && carried < nearest * vacf[1] / vacf[0];
+    if (carried > farthest || less)
         mf_progress_print(progress,
                           "mesofit: warning: from frame to frame beads move %.2g times as far as "
-                          "their velocities carry them in %.3g ps: %s",
+                          "their velocities carry them in %.3g ps: is %s, or that of places, in "
+                          "another unit?",
                           carried, time[1],
-                          told ? "is --file-time-step, in ps, that of the simulation?"
-                               : "are times, places or velocities in another unit?");
-    else if (told && diffusion < slowest)
-        mf_progress_print(progress,
-                          "mesofit: warning: D is %.1g of that of beads that lose their velocity "
-                          "at each neighbour, where liquids have more than 0.01 of it: is "
-                          "--file-time-step, in ps, that of the simulation? (solids look so, too)",
-                          diffusion);
+                          result->request->frames.options.time_step > 0 ? "--file-time-step (ps)"
+                                                                        : "the time");
     return STATUS_OK;
 }
 

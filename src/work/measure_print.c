@@ -298,8 +298,11 @@ static void print_temperature(struct progress *progress, const struct measure_re
     const struct sample_series *const kinetic = &motion->temperature;
     double error;
     const double given = result->request->temperature, mean = mf_measured_mean(kinetic, &error);
+    // Few frames may agree by chance: no less than by equipartition.
+    const double least =
+        mean * sqrt(2 / (3 * (double)result->mapping->beads * (double)kinetic->count));
     const bool off = kinetic->count > 0 && fabs(given - mean) > tolerance * given &&
-                     !(fabs(given - mean) <= errors * error);
+                     !(fabs(given - mean) <= errors * fmax(error, least));
     char text[NUMBER_TEXT_SIZE];
     mf_number_text(mean, error, text);
     if (isnan(given) && (kinetic->count == 0 || !motion->is_thermal))

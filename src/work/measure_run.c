@@ -339,7 +339,7 @@ static void tell_rest(struct run *run, size_t left_out, size_t frames, const cha
 static enum status find_equilibrium(struct run *run) {
     const size_t frames = run->measured.frames;
     struct frame_features_slowest slowest;
-    if (frames < EQUILIBRATION_MIN_SAMPLES)
+    if (frames > 1 && frames < EQUILIBRATION_MIN_SAMPLES && !run->measured.in_vacuum)
         mf_progress_print(&run->progress,
                           "too few frames (%zu) to tell whether the trajectory is in equilibrium: "
                           "%d at least",

@@ -49,6 +49,15 @@ static void test_a_run_that_was_lengthened_counts_once(void **state) {
     assert_close(mf_inversion_memory_find(&memory, 2, 256, 3), 3, 1e-12);
 }
 
+/// A potential may be slow where those before were quick.
+static void test_a_run_counts_half_of_what_it_shows_at_least(void **state) {
+    (void)state;
+    struct inversion_memory memory = {0};
+    mf_inversion_memory_find(&memory, 2, 4096, 1);
+    mf_inversion_memory_begin_run(&memory, false);
+    assert_close(mf_inversion_memory_find(&memory, 2, 256, 10), 5, 1e-12);
+}
+
 static void test_what_was_given_up_is_forgotten(void **state) {
     (void)state;
     struct inversion_memory memory = {0};
@@ -72,6 +81,7 @@ int main(void) {
         cmocka_unit_test(test_a_memory_is_the_same_of_any_spacing),
         cmocka_unit_test(test_runs_count_by_their_lengths_and_half_of_the_next),
         cmocka_unit_test(test_a_run_that_was_lengthened_counts_once),
+        cmocka_unit_test(test_a_run_counts_half_of_what_it_shows_at_least),
         cmocka_unit_test(test_what_was_given_up_is_forgotten),
         cmocka_unit_test(test_independent_samples_have_no_memory),
     };

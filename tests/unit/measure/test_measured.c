@@ -31,8 +31,13 @@ static struct film *make_film(size_t frames, size_t types) {
     struct film *film = calloc(1, sizeof *film);
     film->frames = frames;
     film->frame = calloc(frames, sizeof *film->frame);
-    film->mapping = (struct mapping){BEADS,      BEADS,        types, film->name, film->bead,
-                                     film->atom, film->weight, {0},   false};
+    film->mapping = (struct mapping){.atoms = BEADS,
+                                     .beads = BEADS,
+                                     .types = types,
+                                     .type_name = film->name,
+                                     .bead = film->bead,
+                                     .atom = film->atom,
+                                     .weight = film->weight};
     for (size_t k = 0; k < BEADS; k++) {
         film->bead[k] = (struct mapping_bead){
             .first = k, .count = 1, .type = types == 2 && k >= BEADS / 3, .molecule = k, .mass = 2};
