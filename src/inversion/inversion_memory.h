@@ -22,8 +22,8 @@ struct inversion_memory {
 /// it, and what one run has found scatters as much as its replicas are few. As the potential
 /// changes, each counts half of what the next one does; and what a run has found itself counts as
 /// half of it at least, as a few replicas tell it within a factor of two. With one correlation time
-/// τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is coth(h/2τ). Tested:
-/// test_inversion_memory.
+/// τ, samples h apart have 1 + 2 Σ exp(−kh/τ), k from 1 on, which is coth(h/2τ).
+/// Tested: test_inversion_memory.
 /// @param[in] every  sweeps between samples
 /// @param[in] run    sweeps of each replica, in place of what was said of this run before
 static inline double mf_inversion_memory_find(struct inversion_memory *memory, double every,
