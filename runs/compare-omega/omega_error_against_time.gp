@@ -17,7 +17,13 @@ set xlabel "processor time / s"
 set ylabel "error of {/:Italic E}({/:Italic t}, {/:Italic r}_0), rms"
 set key off
 
-load "../band_of_seeds.gp"
+courses(method) = system("ls out/".method."-[0-9]/course.tsv")
+# Of the seeds of a method, the k-th points: mean time; least, mean and largest error. Seeds of fewer points end earlier.
+band(method) = "< awk -F '\t' '!/^#/ { k = FNR; if (k > last) last = k; n[k]++; t[k] += log($2); s[k] += log($3); \
+    if (n[k] == 1 || $3 < low[k]) low[k] = $3; if (n[k] == 1 || $3 > high[k]) high[k] = $3; if (FILENAME != file) files++; file = FILENAME } \
+    END { for (k = 2; k <= last; k++) if (n[k] == files) print exp(t[k] / n[k]) \"\t\" low[k] \"\t\" exp(s[k] / n[k]) \"\t\" high[k] }' " . \
+    system("echo out/".method."-[0-9]/course.tsv")
+
 stats "< grep -hv '^#' out/*-[0-9]/course.tsv" using 4 name "N" nooutput
 set object 1 rectangle from graph 0, graph 0 to graph 1, first N_mean fillcolor rgb "#ececec" fillstyle solid noborder behind
 set label 1 "noise" at graph 0.98, first 0.0037 right textcolor rgb "#777777"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# How far water's g(r) is off after how much work: error-against-time.png from out/METHOD-SEED/course.tsv of five methods.
+# How far water's g(r) is off after how much work: error-against-time.png from out/METHOD-1/course.tsv of five methods.
 set terminal pngcairo size 1400, 860 font "Liberation Sans,13" fontscale 2 linewidth 2 pointscale 2 background "#ffffff"
 set output "error-against-time.png"
 set encoding utf8
@@ -17,19 +17,26 @@ set xlabel "processor time / s"
 set ylabel "error of {/:Italic g}({/:Italic r}), rms"
 set key off
 
-load "../band_of_seeds.gp"
-
-stats "< grep -hv '^#' out/imc-[0-9]/course.tsv" using 4 name "N" nooutput
+stats "out/imc-1/course.tsv" using 4 name "N" nooutput
 set object 1 rectangle from graph 0, graph 0 to graph 1, first N_mean fillcolor rgb "#ececec" fillstyle solid noborder behind
 set label 1 "noise: differences cannot be told here" at graph 0.98, first 0.00165 right textcolor rgb "#777777"
 set arrow 1 from graph 0, first 0.113 to graph 1, first 0.113 nohead dashtype 3 linewidth 1.2 linecolor rgb "#777777"
 set label 2 "without any fit: {/:Italic Φ} = −{/:Italic k}_B{/:Italic T} ln {/:Italic g}" at graph 0.98, first 0.135 right textcolor rgb "#777777"
 
-methods = "original memetic gauss-newton ibi imc"
-colours = "#7a7a7a #d55e00 #56b4e9 #009e73 #0072b2"
-array name[5] = ["genetic, as in the thesis", "genetic, today", "Gauss-Newton", "iterative Boltzmann inversion", "inverse Monte Carlo"]
-array at_time[5] = [40, 60, 22, 45, 5]
-array at_error[5] = [0.045, 0.0062, 0.0175, 0.0038, 0.0031]
-do for [k = 1:5] { set label 10 + k name[k] at at_time[k], at_error[k] center textcolor rgb word(colours, k) }
-plot for [k = 1:5] band(word(methods, k)) using 1:2:4 with filledcurves fillcolor rgb word(colours, k) fillstyle transparent solid 0.2 noborder, \
-    for [k = 1:5] band(word(methods, k)) using 1:3 with linespoints linewidth 2.4 pointtype 7 pointsize 0.75 linecolor rgb word(colours, k)
+course(method) = sprintf("out/%s-1/course.tsv", method)
+points = "with linespoints linewidth 2.4 pointtype 7 pointsize 0.75 linecolor rgb"
+# The name of a method stands at one of its points.
+at_last(method, name, colour, k, x, y) = sprintf("set label %d '%s' at %g, %g center textcolor rgb '%s'", \
+    k, name, x * real(system("tail -n 1 ".course(method)." | cut -f 2")), \
+    y * real(system("tail -n 1 ".course(method)." | cut -f 3")), colour)
+eval at_last("original", "genetic, as in the thesis", "#7a7a7a", 11, 0.55, 0.74)
+eval at_last("memetic", "genetic, today", "#d55e00", 12, 1.1, 0.72)
+eval at_last("gauss-newton", "Gauss-Newton", "#56b4e9", 13, 0.9, 1.5)
+eval at_last("imc", "inverse Monte Carlo", "#0072b2", 14, 0.38, 1.22)
+eval at_last("ibi", "iterative Boltzmann inversion", "#009e73", 15, 2.85, 1.02)
+
+plot course("original") using 2:3 @points "#7a7a7a", \
+    course("memetic") using 2:3 @points "#d55e00", \
+    course("gauss-newton") using 2:3 @points "#56b4e9", \
+    course("ibi") using 2:3 @points "#009e73", \
+    course("imc") using 2:3 @points "#0072b2"
