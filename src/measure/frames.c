@@ -81,6 +81,16 @@ static enum status close_file(struct frames *frames) {
     return STATUS_OK;
 }
 
+enum status mf_frames_refuse_pipe(const char *file) {
+    struct stat is;
+    if (stat(file, &is) != 0 || !S_ISFIFO(is.st_mode))
+        return STATUS_OK;
+    return mf_status_fail(STATUS_BAD_INPUT,
+                          "%s: a pipe is read once: say what its atoms are by -s FILE, or save it "
+                          "to a file first",
+                          file);
+}
+
 enum status mf_frames_open(struct frames *frames, const struct frames_plan *plan,
                            const struct structure *structure, const char *structure_file) {
     enum status status;

@@ -51,6 +51,10 @@ struct frames {
     struct bytes notes; ///< lines for a person: what was left out and why; a text
 };
 
+/// Refuse a pipe that is to say what its atoms are, too: that is read before its frames.
+/// Fails: BAD_INPUT. Tested: cli/test_measure_words.
+enum status mf_frames_refuse_pipe(const char *file) MUST_USE;
+
 /// Open the first file. @param[in] structure  NULL: that of the first file
 /// Fails: as mf_trajectory_open; BAD_INPUT if its atoms are not those of the structure.
 /// Tested: test_measure.

@@ -2,6 +2,7 @@
 #include "work/measure_doubts.h"
 
 #include "base/memory.h"
+#include "observe/equilibration.h"
 #include "trajectory/frame.h"
 
 #include <math.h>
@@ -65,6 +66,27 @@ void mf_measure_doubts(struct progress *progress, const struct trajectory_frame 
                        size_t beads, const char *units) {
     doubt_density(progress, frame, beads, units);
     doubt_box(progress, frame);
+}
+
+void mf_measure_doubt_interval(struct progress *progress, const struct frames *frames,
+                               size_t count) {
+    static const double share = 0.01;
+    const double every = frames->plan.every;
+    const struct trajectory_frame *const frame = frames->frame;
+    const double interval = count > 1 ? frame[1].time - frame[0].time : every;
+    if (every > 0 && fabs(interval / every - 1) > share)
+        mf_progress_print(progress,
+                          "mesofit: warning: --every %g: frames %.6g ps apart are used, since "
+                          "there are none between",
+                          every, interval);
+}
+
+void mf_measure_doubt_few(struct progress *progress, size_t frames) {
+    if (frames > 1 && frames < EQUILIBRATION_MIN_SAMPLES)
+        mf_progress_print(progress,
+                          "too few frames (%zu) to tell whether the trajectory is in equilibrium: "
+                          "%d at least",
+                          frames, EQUILIBRATION_MIN_SAMPLES);
 }
 
 /// Where g(r) of a pair type has the highest peak of all [nm]; 0: none has any.

@@ -16,3 +16,11 @@ void mf_measure_doubts(struct progress *progress, const struct trajectory_frame 
 /// contradict. Fails: NO_MEMORY. Tested: cli/test_measure_words.
 enum status mf_measure_doubt_results(struct progress *progress,
                                      const struct measure_result *result) MUST_USE;
+
+/// Warn of frames that are wanted further apart than they are, and come at common multiples of both
+/// times. @param[in] count  of those that were read first
+void mf_measure_doubt_interval(struct progress *progress, const struct frames *frames,
+                               size_t count);
+
+/// Say that frames are too few to tell equilibrium.
+void mf_measure_doubt_few(struct progress *progress, size_t frames);

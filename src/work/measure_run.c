@@ -4,7 +4,6 @@
 #include "base/memory.h"
 #include "scene/molecules_file.h"
 #include "io/units.h"
-#include "observe/equilibration.h"
 #include "report/progress.h"
 #include "trajectory/beads_file.h"
 #include "trajectory/votca_map.h"
@@ -106,18 +105,6 @@ static enum status read_molecules(struct run *run) {
                                      &run->structure.structure, request->map != NULL);
 }
 
-/// What is in a trajectory itself is read before its frames, from its begin.
-static enum status refuse_pipe(const struct run *run) {
-    const char *const file = run->request->frames.file[0];
-    struct stat is;
-    if (run->request->structure || stat(file, &is) != 0 || !S_ISFIFO(is.st_mode))
-        return STATUS_OK;
-    return mf_status_fail(STATUS_BAD_INPUT,
-                          "%s: a pipe is read once: say what its atoms are by -s FILE, or save it "
-                          "to a file first",
-                          file);
-}
-
 /// Names, residues and masses are of -s alone, if it is given.
 static enum status open_structure(struct run *run) {
     const char *const given = run->request->structure;
@@ -140,7 +127,8 @@ static enum status open_structure(struct run *run) {
 /// What the atoms are, which of them are beads, and what molecules there may be.
 static enum status find_beads(struct run *run) {
     const struct measure_request *const request = run->request;
-    TRY(refuse_pipe(run));
+    if (request->structure == NULL)
+        TRY(mf_frames_refuse_pipe(request->frames.file[0]));
     TRY(open_structure(run));
     TRY(read_molecules(run));
     TRY(request->molecules && !request->map ? take_atoms(run) : map_atoms(run));
@@ -181,22 +169,9 @@ static void report(struct run *run) {
                        "frames", text);
 }
 
-/// Frames that are wanted further apart than they are come at common multiples of both times.
-static void print_interval(struct run *run, size_t count) {
-    static const double share = 0.01;
-    const double every = run->request->frames.every;
-    const struct trajectory_frame *const frame = run->frames.frame;
-    const double interval = count > 1 ? frame[1].time - frame[0].time : every;
-    if (every > 0 && fabs(interval / every - 1) > share)
-        mf_progress_print(&run->progress,
-                          "mesofit: warning: --every %g: frames %.6g ps apart are used, since "
-                          "there are none between",
-                          every, interval);
-}
-
 /// What frames that are read again would tell again.
 static void tell_first(struct run *run, size_t count) {
-    print_interval(run, count);
+    mf_measure_doubt_interval(&run->progress, &run->frames, count);
     // Of several atoms, which bonds of fixed length may join to those of others.
     const bool parts = run->mapping.broken && run->mapping.beads < run->mapping.atoms;
     if (run->request->measured.force_cutoff > 0 && parts)
@@ -339,11 +314,8 @@ static void tell_rest(struct run *run, size_t left_out, size_t frames, const cha
 static enum status find_equilibrium(struct run *run) {
     const size_t frames = run->measured.frames;
     struct frame_features_slowest slowest;
-    if (frames > 1 && frames < EQUILIBRATION_MIN_SAMPLES && !run->measured.in_vacuum)
-        mf_progress_print(&run->progress,
-                          "too few frames (%zu) to tell whether the trajectory is in equilibrium: "
-                          "%d at least",
-                          frames, EQUILIBRATION_MIN_SAMPLES);
+    if (!run->measured.in_vacuum)
+        mf_measure_doubt_few(&run->progress, frames);
     TRY(mf_frame_features_assess(&run->measured.features, &run->measured.pairs, &slowest));
     if (slowest.frames == 0)
         return tell_drift(run, 0);
