@@ -97,7 +97,8 @@ static double multiply(const double *matrix, size_t n, const double *v, double *
     return product;
 }
 
-double mf_inversion_band_spread(const struct inversion *inversion, const double *v, double *out) {
+/// out = Σ v; returns v·Σ v.
+static double spread(const struct inversion *inversion, const double *v, double *out) {
     return multiply(inversion->course.band.covariance, inversion_grid(inversion)->known, v, out);
 }
 
@@ -174,7 +175,7 @@ static void find_step(const struct inversion *inversion, const double *most_prob
 /// What this step would change of the number whose slope is v.
 static struct inversion_band_drift find_drift(const struct inversion *inversion, const double *v,
                                               const double *step, double *scratch) {
-    struct inversion_band_drift found = {0, sqrt(mf_inversion_band_spread(inversion, v, scratch))};
+    struct inversion_band_drift found = {0, sqrt(spread(inversion, v, scratch))};
     for (size_t a = 0; a < inversion_grid(inversion)->known; a++)
         found.drift += v[a] * step[a];
     return found;
@@ -195,7 +196,7 @@ static void find_drifts(struct inversion *inversion, const double *step, const d
 /// that is more.
 static void add_drift(struct inversion *inversion, const double *weight, double *scratch) {
     const struct inversion_drifts *drifts = &inversion->course.progress.drifts;
-    const double variance = mf_inversion_band_spread(inversion, weight, scratch);
+    const double variance = spread(inversion, weight, scratch);
     double square = pow(inversion->course.band.drifts.ramp.drift, 2);
     if (drifts->near > 0)
         square =
@@ -213,7 +214,7 @@ static bool meet_bulk(struct inversion *inversion, double *k) {
     const size_t n = inversion_grid(inversion)->known;
     if (!mf_inversion_bulk_is_asked(inversion->state) || inversion->equations.reduced)
         return false;
-    inversion->course.band.ramp.bulk_open = sqrt(mf_inversion_band_spread(inversion, slope, k));
+    inversion->course.band.ramp.bulk_open = sqrt(spread(inversion, slope, k));
     const double noise =
         inversion->assessment.distance[mf_inversion_bulk_kind(inversion->state)].noise;
     const double along = multiply(inversion->course.band.inverse, n, slope, k);
@@ -229,7 +230,7 @@ static void find_errors(struct inversion *inversion, const double *weight, doubl
     const struct potential_grid *grid = inversion_grid(inversion);
     struct inversion_band *band = &inversion->course.band;
     const size_t n = grid->known;
-    const double ramp_variance = mf_inversion_band_spread(inversion, weight, scratch);
+    const double ramp_variance = spread(inversion, weight, scratch);
     for (size_t a = 0; a < n; a++) {
         const double variance = band->covariance[a * n + a];
         const double of_ramp = ramp_variance > 0 ? scratch[a] * scratch[a] / ramp_variance : 0;
@@ -376,8 +377,7 @@ enum status mf_inversion_band_find(struct inversion *inversion) {
                                                    met ? scratch : NULL};
     CHECK(mf_inversion_band_add_range(inversion, &without));
     if (!met)
-        band->ramp.bulk_open =
-            sqrt(mf_inversion_band_spread(inversion, inversion->state->bulk.slope, scratch));
+        band->ramp.bulk_open = sqrt(spread(inversion, inversion->state->bulk.slope, scratch));
     find_errors(inversion, weight, scratch);
     if (!isnan(band->covariance[0]))
         CHECK(find_flat(inversion));

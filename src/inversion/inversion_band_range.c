@@ -11,14 +11,10 @@
 /// A shorter range, in that of the fit.
 static const double shorter = 0.8;
 
-/// The share s of the height of the last fifth that the slope of a law at its end makes is so many
-/// times that of a fit's potential, which makes up for what is cut off (screened Coulomb and star
-/// polymers); what is larger cannot be told.
-static const double of_slope = 1.5, most = 0.7;
-
-/// What lies beyond a range moves the pressure by s/(1 − s) times this, over what the last fifth
-/// does.
-static const double beyond_of_share = 1.5;
+/// What lies beyond a range, over what its last fifth does, is the square of so many times the
+/// share of the slope: of that of a law twice; a fit comes to its end with some two thirds of it,
+/// as it makes up for what is cut off (screened Coulomb and star polymers).
+static const double of_slope = 3;
 
 static double range_of(const struct inversion *inversion) {
     const struct rdf_bins *bins = &inversion->problem->targets.bins;
@@ -50,16 +46,13 @@ static double find_beyond(const struct inversion *inversion, const double *step,
     }
     const double slope = y1 * s4 - y2 * s3, bend = y2 * s2 - y1 * s3; // times s2 s4 − s3²
     const double share = slope / (slope + bend * fifth);
-    if (!(share > 0)) // of no bins, NaN, none
-        return 0;
-    const double whole = fmin(most, of_slope * share);
-    return beyond_of_share * whole / (1 - whole);
+    return share > 0 ? fmin(1, pow(of_slope * share, 2)) : 0; // of no bins, NaN, none
 }
 
-/// The bins beyond the shorter range, and how much of each is to be gone; of others 0.
-/// @param[out] outer, gone  shape [known]
-static void find_gone(const struct inversion *inversion, const double *step, bool *outer,
-                      double *gone) {
+/// What is left of each outer bin: of those of a potential that ends before them 0.
+/// @param[out] left  shape [known]
+static void find_left(const struct inversion *inversion, const double *step, bool *outer,
+                      double *left) {
     const struct potential_grid *grid = inversion_grid(inversion);
     const double range = range_of(inversion);
     for (size_t a = 0; a < grid->known; a++)
@@ -68,118 +61,81 @@ static void find_gone(const struct inversion *inversion, const double *step, boo
         const size_t end = first + grid->known_of[pair];
         const double beyond = find_beyond(inversion, step, first, end, outer);
         for (size_t a = first; a < end; a++)
-            gone[a] = outer[a] ? beyond : 0;
+            left[a] = (1 - beyond) * most_probable(inversion, step, a);
     }
 }
 
-/// A symmetric matrix of which the lower triangle is known.
-static double symmetric(const gsl_matrix *matrix, size_t a, size_t b) {
-    return gsl_matrix_get(matrix, a > b ? a : b, a > b ? b : a);
-}
-
-/// Leave of the equations those of the inner bins alone, and factor them; false if rounding leaves
-/// none.
-static bool factor_inner(const bool *outer, gsl_matrix *normal) {
-    for (size_t a = 0; a < normal->size1; a++)
+/// The step that the equations ask for if the outer bins take that of them which leads to what is
+/// left; false if rounding leaves none.
+/// @param[in,out] normal  with its lower triangle; its factor
+/// @param[in,out] x       what the equations ask for; the step of all
+static bool solve_with_outer(const struct inversion *inversion, const bool *outer,
+                             const double *left, gsl_matrix *normal, gsl_vector *x) {
+    const size_t n = x->size, *point = inversion_grid(inversion)->known_point;
+    const double *phi = inversion->course.phi;
+    for (size_t a = 0; a < n; a++)
+        for (size_t b = 0; b < n; b++)
+            if (!outer[a] && outer[b])
+                *gsl_vector_ptr(x, a) -= gsl_matrix_get(normal, a > b ? a : b, a > b ? b : a) *
+                                         (left[b] - phi[point[b]]);
+    for (size_t a = 0; a < n; a++) {
+        if (outer[a])
+            gsl_vector_set(x, a, left[a] - phi[point[a]]);
         for (size_t b = 0; b <= a; b++)
             if (outer[a] || outer[b])
                 gsl_matrix_set(normal, a, b, a == b);
-    return gsl_linalg_cholesky_decomp1(normal) == GSL_SUCCESS;
-}
-
-/// What the equations make of the inner bins if the outer ones change by −gone Φ.
-/// @param[out] x  the change
-static void solve_inner(const struct inversion *inversion, const double *step, const bool *outer,
-                        const double *gone, const gsl_matrix *all, const gsl_matrix *inner,
-                        gsl_vector *x) {
-    gsl_vector_set_zero(x);
-    for (size_t b = 0; b < x->size; b++) {
-        const double change = -gone[b] * most_probable(inversion, step, b);
-        for (size_t a = 0; outer[b] && a < x->size; a++)
-            if (!outer[a])
-                *gsl_vector_ptr(x, a) -= symmetric(all, a, b) * change;
-        if (outer[b])
-            gsl_vector_set(x, b, change);
     }
-    gsl_linalg_cholesky_svx(inner, x);
+    if (gsl_linalg_cholesky_decomp1(normal) != GSL_SUCCESS)
+        return false;
+    gsl_linalg_cholesky_svx(normal, x);
+    return true;
 }
 
-/// The variance that the errors of the outer bins make of the change of a pair type's ramp: a
-/// change e of them changes it by Σ_o e_o (w_o − Σ_i H_oi y_i), H y = w among the inner bins.
-/// @param[in,out] y  w of the pair type; scratch
-static double find_noise(const struct inversion *inversion, const bool *outer, const double *gone,
-                         const gsl_matrix *all, const gsl_matrix *inner, gsl_vector *y) {
-    const size_t n = y->size;
-    const double *covariance = inversion->course.band.covariance;
-    double sum = 0;
-    gsl_linalg_cholesky_svx(inner, y); // leaves w in the outer bins
-    for (size_t o = 0; o < n; o++)
-        for (size_t i = 0; outer[o] && i < n; i++)
-            if (!outer[i])
-                *gsl_vector_ptr(y, o) -= symmetric(all, o, i) * gsl_vector_get(y, i);
-    for (size_t a = 0; a < n; a++)
-        for (size_t b = 0; outer[a] && b < n; b++)
-            if (outer[b])
-                sum += gone[a] * gone[b] * gsl_vector_get(y, a) * gsl_vector_get(y, b) *
-                       covariance[a * n + b];
-    return sum;
-}
-
-/// The share of the squares of the change that is more than errors, in Σ already, make of the ramp
-/// of a pair type: the largest of all.
-static double find_share(const struct inversion *inversion, const double *weight, const bool *outer,
-                         const double *gone, const gsl_matrix *all, const gsl_matrix *inner,
-                         const gsl_vector *change, gsl_vector *y) {
-    const struct potential_grid *grid = inversion_grid(inversion);
-    double share = 0;
-    for (size_t pair = 0, first = 0; pair < grid->pairs; first += grid->known_of[pair++]) {
-        double ramp = 0;
-        gsl_vector_set_zero(y);
-        for (size_t a = first; a < first + grid->known_of[pair]; a++) {
-            gsl_vector_set(y, a, weight[a]);
-            ramp += weight[a] * gsl_vector_get(change, a);
-        }
-        const double noise = find_noise(inversion, outer, gone, all, inner, y);
-        if (ramp * ramp > noise)
-            share = fmax(share, 1 - noise / (ramp * ramp));
-    }
-    return share;
-}
-
-/// The change of Φ without conventions, beyond noise; 0: there is none.
+/// The change of Φ without conventions, and whether there is one.
 static enum status find_change(const struct inversion *inversion,
-                               const struct inversion_band_without *without, gsl_vector *change) {
+                               const struct inversion_band_without *without, gsl_vector *change,
+                               bool *found) {
     enum status status = STATUS_OK;
     const size_t n = change->size;
-    gsl_matrix *all = gsl_matrix_alloc(n, n), *inner = gsl_matrix_alloc(n, n);
-    gsl_vector *y = gsl_vector_alloc(n);
+    gsl_matrix *normal = gsl_matrix_alloc(n, n);
     bool *outer = NULL;
-    double *gone = NULL, share = 0;
-    CHECK(all && inner && y ? STATUS_OK : STATUS_NO_MEMORY);
+    double *left = NULL;
+    CHECK(normal ? STATUS_OK : STATUS_NO_MEMORY);
     NEW_ARRAY(outer, n);
-    NEW_ARRAY(gone, n);
-    find_gone(inversion, without->step, outer, gone);
-    CHECK(mf_inversion_equations_without(&inversion->equations, without->birge, outer, all, y));
-    CHECK(mf_inversion_band_add_prior(inversion, *without->system, all, y));
-    gsl_matrix_memcpy(inner, all);
-    if (factor_inner(outer, inner)) {
-        solve_inner(inversion, without->step, outer, gone, all, inner, change);
-        share = find_share(inversion, without->weight, outer, gone, all, inner, change, y);
-    }
-    gsl_vector_scale(change, sqrt(share));
+    NEW_ARRAY(left, n);
+    find_left(inversion, without->step, outer, left);
+    CHECK(mf_inversion_equations_without(&inversion->equations, without->birge, outer, normal,
+                                         change));
+    CHECK(mf_inversion_band_add_prior(inversion, *without->system, normal, change));
+    *found = solve_with_outer(inversion, outer, left, normal, change);
+    for (size_t a = 0; a < n; a++)
+        *gsl_vector_ptr(change, a) -= without->step[a];
     CHECK(mf_inversion_band_take_conventions_off(inversion, NULL, change->data));
 done:
-    gsl_matrix_free(all);
-    gsl_matrix_free(inner);
-    gsl_vector_free(y);
+    gsl_matrix_free(normal);
     mf_memory_free(outer);
-    mf_memory_free(gone);
+    mf_memory_free(left);
     return status;
 }
 
-static double along(const double *weight, const double *change, size_t n) {
+/// Σ w of the bins first … end − 1 alone; returns w·Σ w.
+static double spread(const struct inversion *inversion, const double *weight, size_t first,
+                     size_t end, double *with) {
+    const size_t n = inversion_grid(inversion)->known;
+    const double *covariance = inversion->course.band.covariance;
     double sum = 0;
-    for (size_t a = 0; a < n; a++)
+    for (size_t a = 0; a < n; a++) {
+        with[a] = 0;
+        for (size_t b = first; b < end; b++)
+            with[a] += covariance[a * n + b] * weight[b];
+        sum += a >= first && a < end ? weight[a] * with[a] : 0;
+    }
+    return sum;
+}
+
+static double along(const double *weight, const double *change, size_t first, size_t end) {
+    double sum = 0;
+    for (size_t a = first; a < end; a++)
         sum += weight[a] * change[a];
     return sum;
 }
@@ -196,10 +152,28 @@ static void meet(const struct inversion *inversion, const double *k, struct chan
     const size_t n = inversion_grid(inversion)->known;
     if (k == NULL)
         return;
-    const double bulk = along(slope, changes->row[0], n);
+    const double bulk = along(slope, changes->row[0], 0, n);
     mf_inversion_band_take_off_curve(changes->row[0], n, k, slope);
     for (size_t a = 0; a < n; a++)
         changes->row[1][a] = bulk * k[a];
+}
+
+/// The share of the squares of the changes that is more than errors, in Σ already, make of the ramp
+/// of a pair type: the largest of all.
+static double find_share(const struct inversion *inversion, const double *weight,
+                         const struct changes *changes, double *scratch) {
+    const struct potential_grid *grid = inversion_grid(inversion);
+    double share = 0;
+    for (size_t pair = 0, first = 0; pair < grid->pairs; first += grid->known_of[pair++]) {
+        const size_t end = first + grid->known_of[pair];
+        const double variance = spread(inversion, weight, first, end, scratch);
+        double squares = 0;
+        for (int k = 0; k < 2; k++)
+            squares += pow(along(weight, changes->row[k], first, end), 2);
+        if (squares > variance)
+            share = fmax(share, 1 - variance / squares);
+    }
+    return share;
 }
 
 /// Add the changes to Σ. What of them is not the move of Φ along A, as the data have it, is left if
@@ -208,16 +182,19 @@ static void add_changes(struct inversion *inversion, const double *weight,
                         const struct changes *changes, double *scratch) {
     struct inversion_band *band = &inversion->course.band;
     const size_t n = inversion_grid(inversion)->known;
-    const double variance = mf_inversion_band_spread(inversion, weight, scratch);
-    band->ramp.bulk_range = fabs(along(inversion->state->bulk.slope, changes->row[0], n));
+    const double share = find_share(inversion, weight, changes, scratch);
+    if (!(share > 0))
+        return;
+    const double variance = spread(inversion, weight, 0, n, scratch);
+    band->ramp.bulk_range =
+        sqrt(share) * fabs(along(inversion->state->bulk.slope, changes->row[0], 0, n));
     for (int k = 0; k < 2; k++) {
-        const double *change = changes->row[k];
-        const double part = variance > 0 ? along(weight, change, n) / variance : 0;
+        const double *change = changes->row[k], part = along(weight, change, 0, n) / variance;
         for (size_t a = 0; a < n; a++)
-            band->beside_ramp[a] += pow(change[a] - part * scratch[a], 2);
+            band->beside_ramp[a] += share * pow(change[a] - part * scratch[a], 2);
     }
     for (int k = 0; k < 2; k++)
-        mf_inversion_band_add_square(inversion, 1, changes->row[k]);
+        mf_inversion_band_add_square(inversion, share, changes->row[k]);
 }
 
 enum status mf_inversion_band_add_range(struct inversion *inversion,
@@ -226,16 +203,18 @@ enum status mf_inversion_band_add_range(struct inversion *inversion,
     const struct potential_grid *grid = inversion_grid(inversion);
     gsl_vector *change = gsl_vector_calloc(grid->known), *more = gsl_vector_calloc(grid->known);
     double *scratch = NULL;
+    bool found;
     inversion->course.band.ramp.bulk_range = 0;
     memset(inversion->course.band.beside_ramp, 0, grid->known * sizeof(double));
     if (grid->pairs == 0 || inversion->state->basis.count > 0)
         goto done;
     CHECK(change && more ? STATUS_OK : STATUS_NO_MEMORY);
     NEW_ARRAY(scratch, grid->known);
-    CHECK(find_change(inversion, without, change));
+    CHECK(find_change(inversion, without, change, &found));
     struct changes changes = {{change->data, more->data}};
     meet(inversion, without->meet, &changes);
-    add_changes(inversion, without->weight, &changes, scratch);
+    if (found)
+        add_changes(inversion, without->weight, &changes, scratch);
 done:
     gsl_vector_free(change);
     gsl_vector_free(more);

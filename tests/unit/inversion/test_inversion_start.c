@@ -274,8 +274,7 @@ static void test_inversion_band_widens_when_more_than_noise_is_left(void **state
                 (a % 2 ? noises : -noises) * sqrt(inversion->state->variance[a]);
         inversion->assessment.misfit = noises * noises;
         assert_ok(mf_inversion_band_find(inversion));
-        // What the range adds is mostly a ramp, and as large.
-        error[left] = inversion->course.band.without_ramp[inversion->state->grid.known_point[24]];
+        error[left] = inversion->course.band.error[inversion->state->grid.known_point[30]];
     }
     print_message("errors of %.4f and %.4f\n", error[0], error[1]);
     assert_true(error[1] > 1.2 * error[0] && error[1] < 3.01 * error[0]);
