@@ -41,7 +41,7 @@ show_truth = !truth ? "" : ", 'omega.tsv' using ($1 * nm):(column(truth)) " . \
     "with lines title 'truth' @true_line"
 
 both = '"< paste omega.tsv omega_flat.tsv" using ($1 * nm):'
-offset = 2 + int(system("awk -F '\t' '/^#/ && NF > 1 { print NF; exit }' omega.tsv"))
+offset = 2 + int(system("awk -F '\t' '/^#/ { print NF; exit }' omega.tsv"))
 flat(sign) = sprintf(", %s($2 %s 1.96 * $%d) with lines linewidth 1.2 dashtype 3 " . \
     "linecolor rgb ink", both, sign, offset)
 show_flat = !has("omega_flat.tsv") ? "" : \
