@@ -178,7 +178,7 @@ static void find_inefficiencies(struct inversion_state *state, struct inversion_
         // Blocks of samples do not see what lasts longer than they do, nor short runs.
         const double seen = fmax(mf_replicas_inefficiency(replicas, REPLICAS_BLOCKS, bin, count),
                                  mf_replicas_inefficiency(replicas, 1, bin, count));
-        const double found = mf_inversion_memory_find(&state->memory[block], every, run, seen);
+        const double found = mf_inversion_memory_recall(&state->memory[block], every, run, seen);
         for (size_t a = first; a < first + count; a++)
             state->bin_inefficiency[a] = found;
         sum += found * (double)count;

@@ -136,24 +136,6 @@ bool mf_inversion_is_worth_keeping(const struct inversion *inversion,
                mf_inversion_assessment_noises(assessment, targets, progress->min) + 2;
 }
 
-bool mf_inversion_judges_early(const struct inversion *inversion,
-                               const struct inversion_state *state) {
-    enum { MEMORIES = 20 };
-    static const double as_exact = 1.5;
-    const struct inversion_assessment *assessment = &state->assessment;
-    const struct inversion_best_samples *best = &inversion->course.progress.best;
-    const struct targets *targets = &inversion->problem->targets;
-    const struct replicas *replicas = &state->replicas;
-    const double samples = replicas->counts.count / (double)replicas->count;
-    if (isinf(best->distance[TARGET_RDF].rms) || inversion->states > 1 || state->basis.count > 0 ||
-        mf_targets_error(targets, assessment->distance) <=
-            mf_targets_error(targets, best->distance))
-        return false;
-    return mf_inversion_is_worth_keeping(inversion, assessment)
-               ? assessment->own_noise > as_exact * best->own_noise
-               : samples < MEMORIES * state->inefficiency;
-}
-
 /// Whether the present potential is so near to the best one that its samples tell what those of the
 /// best should have been, and did not: a small part of a step changes S by more than twice that
 /// part of what was off, and their noise. What is slow had not settled there.

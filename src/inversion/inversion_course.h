@@ -92,14 +92,6 @@ extern const double mf_inversion_min_damping;
 bool mf_inversion_is_worth_keeping(const struct inversion *inversion,
                                    const struct inversion_assessment *assessment);
 
-/// Whether the samples of a state are too few to tell its potential from the best one, of which
-/// they are farther off: it would not be kept, and each replica's are worth fewer than twenty, so
-/// that what is slow may be on its way; or it would be, as their noise is larger than that of the
-/// best by half. Of several states only all together are kept or not.
-/// Tested: test_inversion_keeps.
-bool mf_inversion_judges_early(const struct inversion *inversion,
-                               const struct inversion_state *state);
-
 /// Whether the present potential is kept: unless it is farther from the targets than the nearest so
 /// far, by two of the present noises. The nearest, not the last: samples are no more precise than a
 /// third of the error, so that each could be 1.67 times as far as the one before, and so on.

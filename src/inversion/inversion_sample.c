@@ -156,20 +156,11 @@ static bool waits(const struct sampling *sampling) {
            (unequilibrated->beside_sizes || may_be_last(sampling));
 }
 
-/// Sweeps of a replica for the least samples of a potential.
-static uint64_t first_sweeps(const struct sampling *sampling) {
-    const struct replicas_plan min = plan(sampling->inversion, sampling->state, 1);
-    const int64_t usual = sampling->state->parameters->equilibration;
-    return replicas_plan_sweeps(&min) +
-           (uint64_t)(min.equilibration < usual ? min.equilibration : usual);
-}
-
 /// Whether samples that have not settled have cost too much. A step may lead to where nothing
 /// settles, as into two phases: half of it is tried when to wait has cost as much as all before it,
 /// so that where each potential is slow, the next one may cost twice that.
-static bool has_cost_enough(const struct sampling *sampling) {
+static bool has_cost_enough(const struct sampling *sampling, uint64_t first) {
     const struct inversion_state *state = sampling->state;
-    const uint64_t first = first_sweeps(sampling);
     const uint64_t before = state->work.sweeps / (uint64_t)state->parameters->replicas;
     const uint64_t least = MIN_TIMES * first;
     return sampling->sweeps > MAX_TIMES * first ||
@@ -184,6 +175,11 @@ static bool is_hopeless(struct sampling *sampling) {
     const struct inversion *inversion = sampling->inversion;
     const struct targets *targets = &sampling->state->problem->targets;
     struct inversion_assessment *assessment = &sampling->state->assessment;
+    const struct replicas_plan min = plan(inversion, sampling->state, 1);
+    const int64_t settling = min.equilibration < sampling->state->parameters->equilibration
+                                 ? min.equilibration
+                                 : sampling->state->parameters->equilibration;
+    const uint64_t first = replicas_plan_sweeps(&min) + (uint64_t)settling;
     const bool farther = sampling->before[TARGET_RDF].count > 0 &&
                          mf_inversion_assessment_noises(assessment, targets, assessment->distance) >
                              mf_inversion_assessment_noises(assessment, targets, sampling->before);
@@ -191,7 +187,7 @@ static bool is_hopeless(struct sampling *sampling) {
     const bool lost =
         other || (inversion->states == 1 && !mf_inversion_is_worth_keeping(inversion, assessment));
     const bool worse = sampling->state->basis.count == 0 && farther && lost;
-    assessment->unequilibrated.for_long = has_cost_enough(sampling);
+    assessment->unequilibrated.for_long = has_cost_enough(sampling, first);
     memcpy(sampling->before, assessment->distance, sizeof sampling->before);
     return assessment->unequilibrated.for_long || worse;
 }
@@ -221,13 +217,6 @@ static bool needs_samples(struct sampling *sampling) {
     doubling->number = before + 1;
     doubling->max = MAX_DOUBLINGS;
     return doubling->noise > doubling->wanted && before < MAX_DOUBLINGS;
-}
-
-/// Whether more samples are to tell the potential from the best one, where it is off.
-static bool judges_early(const struct sampling *sampling) {
-    return sampling->progress.doubling.number <= MAX_DOUBLINGS && !has_cost_enough(sampling) &&
-           !may_be_last(sampling) &&
-           mf_inversion_judges_early(sampling->inversion, sampling->state);
 }
 
 /// Take samples by the plan, all of them or as many again.
@@ -286,12 +275,16 @@ static enum status sample_all(struct sampling *sampling) {
     sampling->progress.done = sampling->progress.total = (uint64_t)state->parameters->replicas;
     for (;;) {
         const uint64_t before = sampling->sweeps;
-        const bool wait = waits(sampling), few = !wait && needs_samples(sampling);
-        if (wait ? is_hopeless(sampling) : !few && !judges_early(sampling))
+        if (waits(sampling) && is_hopeless(sampling))
             return STATUS_OK;
-        TRY(wait ? settle(sampling) : take(sampling, true));
-        if (!few)
+        if (waits(sampling)) {
+            TRY(settle(sampling));
             sampling->waited += sampling->sweeps - before;
+        } else if (needs_samples(sampling)) {
+            TRY(take(sampling, true));
+        } else {
+            return STATUS_OK;
+        }
     }
 }
 
@@ -316,8 +309,6 @@ enum status mf_inversion_sample(struct inversion *inversion, struct inversion_st
                                                                       progress->best.distance),
                                              .min = NAN,
                                              .mean = NAN}};
-    for (size_t block = 0; block < state->grid.blocks; block++)
-        mf_inversion_memory_begin_run(&state->memory[block], progress->from_disorder);
     state->assessment.stretch = progress->stretch;
     unequilibrated->for_long = false;
     state->open.independent = 0;

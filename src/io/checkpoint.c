@@ -8,7 +8,7 @@
 #include <errno.h>
 #include <string.h>
 
-static const char magic[16] = "mesofit state10";
+static const char magic[16] = "mesofit state 9";
 
 /// Bytes of the file, and their checksum so far.
 struct writer {

@@ -188,16 +188,10 @@ void mf_fit_print_iteration(const struct inverse_progress *now, const struct uni
     char error[48] = "", min[48] = "", mean[64] = "", unit[UNITS_NAME_SIZE];
     if (doubling->number > 0) {
         const double factor = mf_units_factor(units, doubling->unit);
-        const int length = snprintf(text, FIT_TELL_SIZE,
-                                    "iteration %u  doubling samples, %d of %d: ", now->iteration,
-                                    doubling->number, doubling->max);
-        if (doubling->noise > doubling->wanted)
-            snprintf(text + length, FIT_TELL_SIZE - (size_t)length, "noise %.2g, wanted %.2g%s",
-                     factor * doubling->noise, factor * doubling->wanted,
-                     mf_units_suffix(units, doubling->unit, unit));
-        else
-            snprintf(text + length, FIT_TELL_SIZE - (size_t)length,
-                     "they are few to call the potential worse");
+        snprintf(text, FIT_TELL_SIZE,
+                 "iteration %u  doubling samples, %d of %d: noise %.2g, wanted %.2g%s",
+                 now->iteration, doubling->number, doubling->max, factor * doubling->noise,
+                 factor * doubling->wanted, mf_units_suffix(units, doubling->unit, unit));
         return;
     }
     if (is_known(now->best))

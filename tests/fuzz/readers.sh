@@ -33,7 +33,7 @@ printf 't"r / pm",U/kJ/mol,x (A)\n1,2,3\n2,3,4\n' >"$place/t-strokes"
 printf 'm{"beads": {"A": {"residue": "B", "atoms": "C D"}, "E": {"first": 1, "last": 6, "size": 3}}, "masses": {"C": 1}}' >"$place/m-map"
 printf 'w<cg_molecule><name>m</name><topology><cg_beads><cg_bead><name>a</name><type>A</type><mapping>w</mapping><beads>1:R:C 2:S:D</beads></cg_bead><cg_bead><name>b</name><type>A</type><mapping>w</mapping><beads>2:S:E 2:S:F</beads></cg_bead></cg_beads><cg_bonded><bond><name>s</name><beads>a b</beads></bond></cg_bonded></topology><maps><map><name>w</name><weights>1 2</weights></map></maps></cg_molecule>' >"$place/w-map"
 printf 'i<cg><non-bonded><name>A-A</name><type1>A</type1><type2>A</type2><max>0.9</max><inverse><target>target.tsv</target><p_target>1</p_target><post_update>pressure</post_update></inverse></non-bonded><bonded><name>b</name><inverse><gromacs><table>table_b1.xvg</table></gromacs></inverse></bonded><inverse><kBT>2.5</kBT><filelist>beads.tsv</filelist></inverse></cg>' >"$place/i-settings"
-printf 'cmesofit state10' >"$place/c-head"
+printf 'cmesofit state 9' >"$place/c-head"
 for kind in 1 2 3 4 5; do
     add $kind $corpus/fit/target.tsv $corpus/simulate/potential.tsv
 done

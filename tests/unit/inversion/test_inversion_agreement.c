@@ -176,7 +176,6 @@ static void test_noise_is_that_of_each_pair_type(void **state) {
     made.state.grid.blocks = 2;
     made.state.grid.known_of = known_of;
     replicas->count = REPLICAS;
-    replicas->every = 1;
     for (size_t k = 0; k < REPLICAS; k++) {
         const double apart = 3 * gsl_ran_gaussian(rng, 1);
         replicas->member[k].block = block[k];

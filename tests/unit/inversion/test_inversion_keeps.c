@@ -69,33 +69,6 @@ static void test_inversion_keeps_no_slow_divergence(void **state) {
     assert_true(inversion->course.progress.min[TARGET_RDF].rms == 0.01);
 }
 
-/// Farther off than the best by replicas of 64 samples, of which 4 count as one; and by samples
-/// whose own noise is twice that of the best, which is all that keeps them.
-static void test_inversion_judges_by_samples_that_are_long_and_exact(void **state) {
-    (void)state;
-    struct fit fit;
-    struct inversion *inversion = begin(&fit, false);
-    struct inversion_assessment *now = &fit.state.assessment;
-    fit.state.replicas.count = 4;
-    fit.state.replicas.counts.count = 4 * 64;
-    fit.state.inefficiency = 4;
-    now->distance[TARGET_RDF] = (struct target_distance){.rms = 0.5, .noise = 0.01};
-    assert_false(mf_inversion_judges_early(inversion, &fit.state)); // there is no other
-    assert_true(keeps(inversion, 0.1, 0.01));
-    inversion->course.progress.best.own_noise = 0.01;
-    assert_true(mf_inversion_judges_early(inversion, &fit.state));
-    fit.state.inefficiency = 3;
-    assert_false(mf_inversion_judges_early(inversion, &fit.state));
-    now->distance[TARGET_RDF] = (struct target_distance){.rms = 0.13, .noise = 0.02};
-    now->own_noise = 0.02;
-    assert_true(mf_inversion_judges_early(inversion, &fit.state));
-    now->own_noise = 0.014;
-    assert_false(mf_inversion_judges_early(inversion, &fit.state));
-    now->own_noise = 0.02;
-    now->distance[TARGET_RDF].rms = 0.09;
-    assert_false(mf_inversion_judges_early(inversion, &fit.state)); // nearer
-}
-
 /// Several targets count in units of their noise; a new start starts again.
 static void test_inversion_keeps_by_all_targets_since_its_start(void **state) {
     (void)state;
@@ -500,7 +473,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_inversion_keeps_what_is_worse_by_chance),
         cmocka_unit_test(test_inversion_keeps_no_slow_divergence),
-        cmocka_unit_test(test_inversion_judges_by_samples_that_are_long_and_exact),
         cmocka_unit_test(test_inversion_keeps_by_all_targets_since_its_start),
         cmocka_unit_test(test_inversion_pool_steps_with_a_fifth_of_the_noise),
         cmocka_unit_test(test_inversion_pool_is_moved_by_the_newest_response),
