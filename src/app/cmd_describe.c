@@ -257,10 +257,26 @@ static bool print_field(const struct topic *topics, size_t count, const char *pa
     return found;
 }
 
+/// The names from which "name" chooses, as of "method.name"; false if the path is another.
+static bool print_choices(const struct topic *topics, size_t count, const char *path) {
+    char outer[256], home[64];
+    const char *const dot = strrchr(path, '.');
+    if (dot == NULL || strcmp(dot, ".name") != 0)
+        return false;
+    snprintf(outer, sizeof outer, "%.*s", (int)(dot - path), path);
+    if (!find_object(topics, count, outer, home) || !is_group(topics, count, home))
+        return false;
+    printf("name (%s): one of\n", home);
+    for (size_t k = 0; k < count; k++)
+        if (strcmp(topics[k].group, home) == 0)
+            printf("  %-16s %s\n", topics[k].name, topics[k].summary);
+    return true;
+}
+
 /// What stands at a path, a number or an object; false if there is nothing.
 static bool print_path(const struct topic *topics, size_t count, const char *path) {
     char name[64];
-    return print_field(topics, count, path) ||
+    return print_field(topics, count, path) || print_choices(topics, count, path) ||
            (find_object(topics, count, path, name) && print_named(topics, count, name));
 }
 

@@ -118,7 +118,9 @@ static void test_describe_of_a_path_is_what_stands_there(void **state) {
     static const char *const paths[][2] = {{"scene.box", "edges"},
                                            {"run.scene.box", "edges"},
                                            {"scene.conservative.a", "soft-repulsion"},
-                                           {"run.target.rdf", "rdf-target (target)"}};
+                                           {"run.target.rdf", "rdf-target (target)"},
+                                           {"run.method.name", "gauss-newton"},
+                                           {"weight.name", "lucy"}};
     (void)state;
     for (size_t k = 0; k < sizeof paths / sizeof *paths; k++) {
         RUN_PROGRAM(&result, "describe", paths[k][0]);

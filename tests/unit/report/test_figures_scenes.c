@@ -314,6 +314,21 @@ static void test_axes_are_named_whatever_the_table_says_of_its_errors(void **sta
     assert_false(figure_folders_print(folder, "rdf", "errors"));
 }
 
+static void test_structure_factors_of_pair_types_are_drawn_by_name(void **state) {
+    (void)state;
+    figure_folders_skip_without_gnuplot();
+    char folder[FIGURE_PATH];
+    figure_folders_make(folder, "structure");
+    figure_folders_write(folder, "structure_factor.tsv",
+                         "# q[1/lambda]\tS[1]\tS_error[1]\tS(A_1-B)[1]\tS_error(A_1-B)[1]\n"
+                         "1\t0.5\t0.01\t-0.5\t0.01\n2\t1\t0.01\t0.1\t0.01\n");
+    figure_folders_draw(folder);
+    assert_true(figure_folders_drawn(folder, "structure_factor"));
+    assert_true(figure_folders_print(folder, "structure_factor", ">A_1-B<"));
+    assert_true(figure_folders_print(folder, "structure_factor", ">all<"));
+    assert_false(figure_folders_print(folder, "structure_factor", "error"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_particles_are_discs_of_their_size_and_type),
@@ -327,6 +342,7 @@ int main(void) {
         cmocka_unit_test(test_vectors_of_molecules_live_for_times_or_sweeps),
         cmocka_unit_test(test_groups_of_a_fit_have_the_colours_of_its_rdf),
         cmocka_unit_test(test_axes_are_named_whatever_the_table_says_of_its_errors),
+        cmocka_unit_test(test_structure_factors_of_pair_types_are_drawn_by_name),
     };
     return cmocka_run_group_tests(tests, figure_folders_begin, figure_folders_end);
 }
