@@ -23,7 +23,7 @@ header(n) = system(sprintf("awk -F '\t' 'BEGIN { " . names . "} /^#/ && NF > 1 {
 # The columns of pair types, and the pair type that a column is of.
 pairwise = y == 4 ? "" : system("awk -F '\t' '/^#/ && NF > 1 { for (i = 4; i <= NF; i++) " . \
     "if ($i ~ /[(].*-.*[)]/ && $i !~ /_error/) print i; exit }'" . from(table))
-pair_column(i) = int("0" . word(pairwise, i)) # gnuplot reads it once where there are none, too
+pair_column(i) = i > words(pairwise) ? 1 : int(word(pairwise, i)) # asked once where there are none, too
 type_of(n) = system(sprintf("awk -F '\t' '/^#/ && NF > 1 { sub(/^[^(]*[(]/, \"\", $%d); sub(/[)].*/, \"\", $%d); print $%d; exit }'", n, n, n) . from(table))
 
 stats table using 1 name "X" nooutput

@@ -320,11 +320,14 @@ static void test_structure_factors_of_pair_types_are_drawn_by_name(void **state)
     char folder[FIGURE_PATH];
     figure_folders_make(folder, "structure");
     figure_folders_write(folder, "structure_factor.tsv",
-                         "# q[1/lambda]\tS[1]\tS_error[1]\tS(A_1-B)[1]\tS_error(A_1-B)[1]\n"
-                         "1\t0.5\t0.01\t-0.5\t0.01\n2\t1\t0.01\t0.1\t0.01\n");
+                         "# q[1/lambda]\tS[1]\tS_error[1]\tS(A_1-A_1)[1]\tS_error(A_1-A_1)[1]\t"
+                         "S(A_1-B)[1]\tS_error(A_1-B)[1]\tS(B-B)[1]\tS_error(B-B)[1]\n"
+                         "1\t0.5\t0.01\t0.9\t0.01\t-0.5\t0.01\t0.9\t0.01\n"
+                         "2\t1\t0.01\t1.1\t0.01\t0.1\t0.01\t1.1\t0.01\n");
     figure_folders_draw(folder);
     assert_true(figure_folders_drawn(folder, "structure_factor"));
     assert_true(figure_folders_print(folder, "structure_factor", ">A_1-B<"));
+    assert_true(figure_folders_print(folder, "structure_factor", ">B-B<"));
     assert_true(figure_folders_print(folder, "structure_factor", ">all<"));
     assert_false(figure_folders_print(folder, "structure_factor", "error"));
 }
