@@ -240,7 +240,7 @@ void mf_bench_case_result(const struct bench_case *bench, const char *scene,
 
 enum {
     BINS = 100,
-    MOST_VARIANTS = 5 + INTERACTION_MAX, ///< the scene itself and each part that it has or lacks
+    MOST_VARIANTS = 6 + INTERACTION_MAX, ///< the scene itself and each part that it has or lacks
 };
 
 /// A skin so narrow that every step finds the pairs anew, in units of the cutoff.
@@ -272,10 +272,11 @@ static struct variant *add(struct skips *skips, const struct bench_scene *scene,
     return variant;
 }
 
-/// Friction and noise are left out with the integrator that is made for them.
+/// Friction and noise are left out with the integrator that is made for them, and with their memory.
 static void leave_out_friction(struct simulation_setup *setup) {
     const bool keeps_inner_steps = mf_respa_acts(setup);
     setup->omega = NULL;
+    setup->memory = (struct pair_memory_law){0};
     if (!keeps_inner_steps) // other parameters are those of the other integrator
         setup->integrator_parameters = NULL;
     setup->integrator = &mf_velocity_verlet;
@@ -294,6 +295,8 @@ static void list_parts(struct skips *skips, const struct bench_scene *scene) {
     add(skips, scene, "", false);
     if (setup->omega && setup->potential)
         leave_out_friction(&add(skips, scene, "friction and noise", true)->scene.scene.setup);
+    if (setup->omega && pair_memory_acts(&setup->memory))
+        add(skips, scene, "memory", true)->scene.scene.setup.memory = (struct pair_memory_law){0};
     // Inner steps are those of what stands beside the pairs: they go together.
     for (int k = 0; k < setup->interactions && !mf_respa_acts(setup); k++)
         leave_out_interaction(

@@ -115,7 +115,7 @@ static size_t lines_of(const char *text) {
 
 /// A line for each part that the scene has or lacks, behind two that say what they are, and a row
 /// in the table.
-static void check_skips(bool dissipative, size_t parts) {
+static void check_skips(bool dissipative, bool remembers, size_t parts) {
     struct fluid fluid;
     struct bench_scene scene = {.name = "tiny"};
     const struct bench_how how = {mf_simd_name(), "mixed", 1, 1e-4};
@@ -124,6 +124,12 @@ static void check_skips(bool dissipative, size_t parts) {
     if (!dissipative) {
         fluid.setup.omega = NULL;
         fluid.setup.integrator = &mf_velocity_verlet;
+    }
+    if (remembers) {
+        fluid.setup.integrator = &mf_aboba;
+        fluid.setup.memory.modes = 1;
+        fluid.setup.memory.mode[0] =
+            (struct pair_memory_mode){.omega = fluid.setup.omega, .time = 0.4};
     }
     scene.scene.setup = fluid.setup;
     FILE *out = fmemopen(text, sizeof text, "w"), *table = fmemopen(rows, sizeof rows, "w");
@@ -136,6 +142,7 @@ static void check_skips(bool dissipative, size_t parts) {
     assert_int_equal(lines_of(rows), parts);
     assert_contains(text, "tiny: 100 particles");
     assert_contains(text, "g(r) at every step");
+    assert_int_equal(strstr(text, "memory") != NULL, remembers);
     assert_contains(rows, "a new neighbour list at every step\tyes\t");
     double with, without, added, error;
     assert_int_equal(sscanf(strstr(rows, "step\tyes\t"), "step\tyes\t%lf\t%lf\t%lf\t%lf", &with,
@@ -148,8 +155,9 @@ static void check_skips(bool dissipative, size_t parts) {
 
 static void test_bench_skips_has_a_line_for_each_part_of_the_scene(void **state) {
     (void)state;
-    check_skips(true, 4);
-    check_skips(false, 3);
+    check_skips(true, false, 4);
+    check_skips(true, true, 5);
+    check_skips(false, false, 3);
 }
 
 int main(void) {
