@@ -374,11 +374,12 @@ static enum status add_one(struct measured *measured, const struct measured_slot
     return mf_sample_series_add(&measured->volume, &slot->box.volume);
 }
 
-static enum status begin_motion(struct measured *measured, const struct trajectory_frame *first) {
+static enum status begin_motion(struct measured *measured, const struct trajectory_frame *first,
+                                size_t count) {
     struct box_vectors box;
     TRY(mf_frame_box_find(&box, first));
     return mf_measured_motion_begin(&measured->motion, &measured->plan.motion, measured->mapping,
-                                    first, &box, measured->plan.height);
+                                    first, count, &box, measured->plan.height);
 }
 
 /// Bonds and sizes, of molecules that a file tells of. Times are printed for frames at equal
@@ -405,8 +406,8 @@ enum status mf_measured_add(struct measured *measured, const struct trajectory_f
     const struct parallel_tasks tasks = {
         .count = count, .threads = measured->plan.threads, .run = look_at, .context = &batch};
     TRY(make_slots(measured, count));
-    if (measured->frames == 0 && count > 1 && !measured->in_vacuum)
-        TRY(begin_motion(measured, frames));
+    if (measured->frames == 0 && !measured->in_vacuum)
+        TRY(begin_motion(measured, frames, count));
     if (measured->frames == 0 && measured->molecules.molecules)
         TRY(begin_molecules(measured, frames, count));
     TRY(mf_measured_forces_begin(measured, frames, count));

@@ -197,6 +197,17 @@ static enum status copy_masses(struct measured_motion *motion, const struct mapp
     return STATUS_OK;
 }
 
+/// Where velocities tell the temperature, those of the types must agree.
+static enum status copy_types(struct measured_motion *motion, const struct mapping *mapping) {
+    if (!motion->is_thermal)
+        return STATUS_OK;
+    TRY_ARRAY(motion->type, mapping->beads);
+    motion->of_type.columns = mapping->types;
+    for (size_t k = 0; k < mapping->beads; k++)
+        motion->type[k] = mapping->bead[k].type;
+    return STATUS_OK;
+}
+
 /// Momentum is that of all atoms: beads of some of them have a share that comes and goes.
 static bool are_all(const struct mapping *mapping) {
     size_t atoms = 0;
@@ -274,7 +285,7 @@ static bool are_timed(const struct trajectory_frame *first) {
 enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct measured_motion_plan *plan,
                                      const struct mapping *mapping,
-                                     const struct trajectory_frame *first,
+                                     const struct trajectory_frame *first, size_t count,
                                      const struct box_vectors *box, double height) {
     enum status status = STATUS_OK;
     struct motion_plan lags;
@@ -283,7 +294,8 @@ enum status mf_measured_motion_begin(struct measured_motion *motion,
     motion->is_kinetic = motion->mass && !mapping->off_mass && mapping->beads > 1;
     motion->is_thermal = motion->is_kinetic && !mapping->broken;
     motion->together = are_all(mapping);
-    if (plan->leave_out || !are_timed(first))
+    CHECK(copy_types(motion, mapping));
+    if (plan->leave_out || count < 2 || !are_timed(first))
         goto done;
     motion->first_time = first[0].time;
     motion->interval =
@@ -311,6 +323,8 @@ void mf_measured_motion_clear(struct measured_motion *motion) {
     mf_motion_clear(&motion->motion);
     mf_etd_clear(&motion->etd);
     mf_sample_series_clear(&motion->temperature);
+    mf_memory_free(motion->type);
+    mf_sample_series_clear(&motion->of_type);
     *motion = (struct measured_motion){0};
 }
 
@@ -335,6 +349,11 @@ static enum status check_frame(const struct measured_motion *motion,
     return STATUS_OK;
 }
 
+/// A kinetic temperature [K] by Σ m v² [u nm²/ps², which are kJ/mol].
+static double temperature_of(double squares, double freedom) {
+    return squares / freedom * 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
+}
+
 /// Kinetic temperature [K] of the beads' velocities, about that of their centre of mass if it
 /// rests.
 static double find_temperature(const struct measured_motion *motion,
@@ -351,8 +370,21 @@ static double find_temperature(const struct measured_motion *motion,
     for (int d = 0; motion->together && d < 3; d++)
         squares -= momentum[d] * momentum[d] / all;
     const double freedom = 3 * ((double)beads->atoms - (motion->together ? 1 : 0));
-    // In u nm²/ps², which are kJ/mol.
-    return squares / freedom * 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
+    return temperature_of(squares, freedom);
+}
+
+/// Those of the beads of each type.
+static enum status add_temperatures(struct measured_motion *motion,
+                                    const struct trajectory_frame *beads) {
+    OWNED double *found = NULL;
+    TRY_ARRAY(found, 2 * motion->of_type.columns);
+    double *const freedom = found + motion->of_type.columns;
+    for (size_t k = 0; k < beads->atoms; k++)
+        for (int d = 0; d < 3; d++, freedom[motion->type[k]]++)
+            found[motion->type[k]] += motion->mass[k] * pow(beads->velocity[k][d], 2);
+    for (size_t type = 0; type < motion->of_type.columns; type++)
+        found[type] = temperature_of(found[type], freedom[type]);
+    return mf_sample_series_add(&motion->of_type, found);
 }
 
 static enum status add_pairs(struct measured_motion *motion, const struct trajectory_frame *beads,
@@ -387,6 +419,8 @@ enum status mf_measured_motion_add(struct measured_motion *motion,
     if (beads->has_velocities && motion->is_kinetic) {
         const double temperature = find_temperature(motion, beads);
         TRY(mf_sample_series_add(&motion->temperature, &temperature));
+        if (motion->type)
+            TRY(add_temperatures(motion, beads));
     }
     return STATUS_OK;
 }

@@ -96,18 +96,20 @@ struct measured_motion {
     struct motion motion;
     struct etd etd;
     struct sample_series temperature; ///< kinetic, of the beads [K]
+    size_t *type;                     ///< of each bead; NULL: velocities tell no temperature
+    struct sample_series of_type;     ///< kinetic, of the beads of each type [K]
 };
 
-/// Prepare for frames whose first two are given, of beads in a box of that density, and boxes of at
-/// least that height.
-/// Nothing but the temperature begins, and `begun` stays false, if that is wanted, or if the frames
-/// have no times.
+/// Prepare for frames of which the first are given, two or all there are, of beads in a box of that
+/// density, and boxes of at least that height.
+/// Nothing but the temperature begins, and `begun` stays false, if that is wanted, if there is one
+/// frame, or if the frames have no times.
 /// Fails: BAD_INPUT for velocities that are asked for and missing, or a window that is too short;
 /// NO_MEMORY.
 enum status mf_measured_motion_begin(struct measured_motion *motion,
                                      const struct measured_motion_plan *plan,
                                      const struct mapping *mapping,
-                                     const struct trajectory_frame *first,
+                                     const struct trajectory_frame *first, size_t count,
                                      const struct box_vectors *box, double height) MUST_USE;
 
 /// Add the next frame, whose beads are also told as a configuration. Fails: BAD_INPUT, naming the

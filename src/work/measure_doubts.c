@@ -169,6 +169,40 @@ static enum status doubt_times(struct progress *progress, const struct measure_r
     return STATUS_OK;
 }
 
+/// The temperature of a type by its velocities; its error, no less than by equipartition.
+static double temperature_of(const struct measure_result *result, size_t type, double *error) {
+    const struct sample_series *const series = &result->measured->motion.of_type;
+    const double beads = (double)result->measured->pairs.composition.count[type];
+    const double mean = mf_sample_series_mean(series, type, error);
+    const double least = mean * sqrt(2 / (3 * beads * (double)series->count));
+    *error = fmax(least, *error);
+    return mean;
+}
+
+/// Types that are far apart in temperature have wrong masses, unless something holds or drives
+/// some.
+static void doubt_equipartition(struct progress *progress, const struct measure_result *result) {
+    static const double least = 0.1, errors = 6;
+    const struct sample_series *const series = &result->measured->motion.of_type;
+    size_t coldest = 0, hottest = 0;
+    double cold = INFINITY, cold_error = 0, hot = 0, hot_error = 0;
+    for (size_t type = 0; type < series->columns && series->count > 0; type++) {
+        double error;
+        const double found = temperature_of(result, type, &error);
+        if (found < cold)
+            cold = found, cold_error = error, coldest = type;
+        if (found > hot)
+            hot = found, hot_error = error, hottest = type;
+    }
+    if (hot < (1 + least) * cold || !(hot - cold > errors * hypot(hot_error, cold_error)))
+        return;
+    mf_progress_print(
+        progress,
+        "mesofit: warning: by velocities and masses %s has %.4g K and %s %.4g K: is a "
+        "mass wrong? (or bonds of fixed length hold some)",
+        result->mapping->type_name[coldest], cold, result->mapping->type_name[hottest], hot);
+}
+
 enum status mf_measure_doubt_results(struct progress *progress,
                                      const struct measure_result *result) {
     if (result->measured->in_vacuum)
@@ -176,5 +210,6 @@ enum status mf_measure_doubt_results(struct progress *progress,
     if (result->request->frames.options.units == NULL ||
         strcmp(result->request->frames.options.units, "lj") != 0)
         TRY(doubt_mass_density(progress, result));
+    doubt_equipartition(progress, result);
     return doubt_times(progress, result);
 }

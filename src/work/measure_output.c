@@ -288,6 +288,8 @@ static void write_etd(const struct measure_result *result, struct json_writer *w
 static void write_diffusion_target(const struct measure_result *result,
                                    struct json_writer *writer) {
     struct motion_summary s = mf_motion_result(&result->measured->motion.motion, NULL);
+    if (!isfinite(s.msd_error)) // of too few frames
+        return;
     mf_json_begin(writer, "diffusion");
     mf_json_write_text(writer, "fitted", "no");
     mf_json_write_quantity(writer, "value", "lambda^2/tau", s.msd);

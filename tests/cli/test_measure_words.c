@@ -31,7 +31,9 @@ static double normal(unsigned *seed) {
 /// Argon at 300 K in a cube of 20 Å, whatever box is told, in LAMMPS's units real: sqrt(k_B T/m) is
 /// 2.4988e-3 Å/fs.
 /// @param[in] shrink  of the box from frame to frame [Å]
-static void write_argon_in(struct temporary_folder *folder, double box, double shrink) {
+/// @param[in] second  element and mass that every second atom is said to have
+static void write_beside(struct temporary_folder *folder, double box, double shrink,
+                         const char *second) {
     static char text[TEXT];
     size_t length = 0;
     unsigned seed = 5;
@@ -44,11 +46,15 @@ static void write_argon_in(struct temporary_folder *folder, double box, double s
                              t, ATOMS, box - t * shrink, box - t * shrink, box - t * shrink);
         for (int k = 0; k < ATOMS; k++)
             length += (size_t)snprintf(
-                text + length, TEXT - length, "%d %d Ar 39.948 %g %g %g %g %g %g\n", k + 1,
-                1 + k % 2, 20 * chance(&seed), 20 * chance(&seed), 20 * chance(&seed),
+                text + length, TEXT - length, "%d %d %s %g %g %g %g %g %g\n", k + 1, 1 + k % 2,
+                k % 2 ? second : "Ar 39.948", 20 * chance(&seed), 20 * chance(&seed), 20 * chance(&seed),
                 2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed));
     }
     temporary_folder_write(folder, "a.dump", text, length);
+}
+
+static void write_argon_in(struct temporary_folder *folder, double box, double shrink) {
+    write_beside(folder, box, shrink, "Ar 39.948");
 }
 
 static void write_argon(struct temporary_folder *folder) {
@@ -75,6 +81,32 @@ static void test_a_temperature_that_velocities_have_not(void **state) {
     MEASURE("--file-units", "real", "--file-time-step", "0.01", "--temperature", "302");
     assert_without("warning: --temperature");
     assert_without("other units?");
+}
+
+static void test_types_of_different_temperatures(void **state) {
+    write_beside(*state, 20, 0, "Kr 83.798");
+    MEASURE("--file-units", "real", "--file-time-step", "0.01");
+    assert_contains(result.err, "warning: by velocities and masses Ar has ");
+    assert_contains(result.err, "is a mass wrong?");
+    write_beside(*state, 20, 0, "Kr 41");
+    MEASURE("--file-units", "real", "--file-time-step", "0.01");
+    assert_without("by velocities and masses");
+}
+
+static void test_one_frame_has_a_temperature(void **state) {
+    write_argon(*state);
+    MEASURE("--file-units", "real", "--end", "0", "--file-time-step", "0.01");
+    assert_contains(result.err, "there is one frame");
+    assert_contains(result.err, "K by the velocities of the beads");
+}
+
+/// D of two windows has no error, and is no target.
+static void test_three_frames_are_a_target(void **state) {
+    write_argon(*state);
+    MEASURE("--file-units", "real", "--end", "0.02", "--file-time-step", "0.01");
+    assert_contains(result.err, "3 frames of");
+    RUN_PROGRAM(&result, "fit", "--target", "out", "--explain");
+    run_program_assert_code(&result, 0);
 }
 
 static void test_units_that_cannot_be(void **state) {
@@ -274,6 +306,9 @@ static void test_the_next_command_is_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_temperature_that_velocities_have_not),
+        TEST(test_types_of_different_temperatures),
+        TEST(test_one_frame_has_a_temperature),
+        TEST(test_three_frames_are_a_target),
         TEST(test_units_that_cannot_be),
         TEST(test_boxes_that_are_not_those_of_the_atoms),
         TEST(test_motion_that_velocities_contradict),
