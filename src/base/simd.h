@@ -29,9 +29,12 @@ bool mf_simd_select(const char *name);
 /// For helpers that are plain loops; kernels have a file for each set (pair_avx2.c,
 /// pair_search_avx2.c). Not with a sanitizer, whose functions are not there yet when the loader
 /// asks, nor by clang 14, which gives static functions of one name in two files one resolver.
+/// Unfused: without products that are added in one rounding, so that all sets have the same bits.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) &&      \
     !defined(__clang__)
 #define SIMD_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#define SIMD_CLONES_UNFUSED __attribute__((target_clones("avx2", "default")))
 #else
 #define SIMD_CLONES
+#define SIMD_CLONES_UNFUSED
 #endif

@@ -2,6 +2,8 @@
 #include "inversion/imc_solve.h"
 
 #include "base/memory.h"
+#include "inversion/householder.h"
+#include "inversion/triangular.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
@@ -59,7 +61,8 @@ static enum status workspace_allocate(struct workspace *w, const struct imc_syst
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
 
-void mf_imc_solve_rows(const struct imc_system *s, gsl_matrix *response, gsl_vector *excess) {
+enum status mf_imc_solve_rows(const struct imc_system *s, gsl_matrix *response,
+                              gsl_vector *excess) {
     for (size_t a = 0; a < s->size; a++) {
         const double scale = s->noise ? 1 : sqrt(s->variance[a]);
         for (size_t b = 0; b < s->size; b++)
@@ -69,11 +72,11 @@ void mf_imc_solve_rows(const struct imc_system *s, gsl_matrix *response, gsl_vec
             gsl_vector_set(excess, a, s->excess[a] / scale);
     }
     if (s->noise == NULL)
-        return;
+        return STATUS_OK;
     gsl_matrix_const_view l = gsl_matrix_const_view_array(s->noise, s->size, s->size);
-    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, &l.matrix, response);
     if (excess)
         gsl_blas_dtrsv(CblasLower, CblasNoTrans, CblasNonUnit, &l.matrix, excess);
+    return mf_triangular_left(&l.matrix, response);
 }
 
 /// Row k of D is (x_{k−1} − 2 x_k + x_{k+1}) (ℓ/h)²/(1 + steepness). In the last the neighbour is
@@ -202,19 +205,20 @@ static void find_constraint_response(struct workspace *w) {
     gsl_blas_dtrsv(CblasUpper, CblasNoTrans, CblasNonUnit, &factor.matrix, w->meet);
 }
 
-/// Solve for x at one strength; returns χ² / size of what is left.
-static double solve_at(struct workspace *w, double strength) {
+/// Solve for x at one strength; χ² / size of what is left.
+static enum status solve_at(struct workspace *w, double strength, double *left) {
     const size_t n = w->size;
     gsl_matrix_memcpy(w->factor, w->rows);
     gsl_matrix_view prior = gsl_matrix_submatrix(w->factor, n, 0, 2 * n - 1, n);
     gsl_matrix_scale(&prior.matrix, sqrt(strength));
-    gsl_linalg_QR_decomp(w->factor, w->reflect);
+    TRY(mf_householder_factor(w->factor, w->reflect));
     gsl_linalg_QR_lssolve(w->factor, w->reflect, w->rhs, w->x, w->residual);
     if (w->system->constraint) {
         find_constraint_response(w);
         meet_constraint(w->system, w->meet->data, w->x->data);
     }
-    return misfit(w, w->x->data);
+    *left = misfit(w, w->x->data);
+    return STATUS_OK;
 }
 
 /// B R⁻¹ = U s Vᵀ, with D = Q R: what x leaves at any strength (L. Eldén, BIT 22, 487 (1982)).
@@ -248,24 +252,25 @@ static enum status spectrum_allocate(struct spectrum *spectrum, size_t n) {
     return mf_status_fail(STATUS_NO_MEMORY, "no memory for %zu linear equations", n);
 }
 
-static void fill_spectrum(const struct workspace *w, struct spectrum *to) {
+static enum status fill_spectrum(const struct workspace *w, struct spectrum *to) {
     const size_t n = w->size;
     gsl_matrix_const_view response = gsl_matrix_const_submatrix(w->rows, 0, 0, n, n);
     gsl_matrix_const_view prior = gsl_matrix_const_submatrix(w->rows, n, 0, 2 * n - 1, n);
     gsl_vector_const_view excess = gsl_vector_const_subvector(w->rhs, 0, n);
     gsl_matrix_memcpy(to->left, &response.matrix);
     gsl_matrix_memcpy(to->prior, &prior.matrix);
-    gsl_linalg_QR_decomp(to->prior, to->scratch);
+    TRY(mf_householder_factor(to->prior, to->scratch));
     gsl_matrix_const_view r = gsl_matrix_const_submatrix(to->prior, 0, 0, n, n);
-    gsl_blas_dtrsm(CblasRight, CblasUpper, CblasNoTrans, CblasNonUnit, 1, &r.matrix, to->left);
+    mf_triangular_right(&r.matrix, to->left);
     gsl_linalg_SV_decomp(to->left, to->right, to->s, to->scratch);
     gsl_blas_dgemv(CblasTrans, 1, to->left, &excess.vector, 0, to->excess);
     if (w->system->constraint == NULL)
-        return;
+        return STATUS_OK;
     for (size_t k = 0; k < n; k++)
         gsl_vector_set(to->scratch, k, w->system->constraint[k]);
     gsl_blas_dtrsv(CblasUpper, CblasTrans, CblasNonUnit, &r.matrix, to->scratch);
     gsl_blas_dgemv(CblasTrans, 1, to->right, to->scratch, 0, to->meet);
+    return STATUS_OK;
 }
 
 /// χ²/size of what is left at a strength, as solve_at finds it.
@@ -296,7 +301,7 @@ static enum status find_strength(const struct workspace *w, double *strength) {
     struct spectrum spectrum = {0};
     double low = -12, high = 6;
     CHECK(spectrum_allocate(&spectrum, n));
-    fill_spectrum(w, &spectrum);
+    CHECK(fill_spectrum(w, &spectrum));
     const double wanted = discrepancy(misfit_at(w, &spectrum, unit * pow(10, low)));
     for (int k = 0; k < ROUNDS; k++) {
         const double middle = 0.5 * (low + high);
@@ -311,15 +316,18 @@ done:
     return status;
 }
 
-/// Trace of the hat matrix B H⁻¹ Bᵀ: Σ_a |R⁻ᵀ B_a|².
+/// Trace of the hat matrix B H⁻¹ Bᵀ: Σ_a |R⁻ᵀ B_a|². Takes the place of the reflections.
 static double count_directions(struct workspace *w) {
-    gsl_matrix_const_view factor = gsl_matrix_const_submatrix(w->factor, 0, 0, w->size, w->size);
+    const size_t n = w->size;
+    gsl_matrix_const_view factor = gsl_matrix_const_submatrix(w->factor, 0, 0, n, n);
+    gsl_matrix_const_view response = gsl_matrix_const_submatrix(w->rows, 0, 0, n, n);
+    gsl_matrix_view solved = gsl_matrix_submatrix(w->factor, n, 0, n, n);
     double trace = 0;
-    for (size_t a = 0; a < w->size; a++) {
-        gsl_vector_const_view row = gsl_matrix_const_row(w->rows, a);
-        gsl_vector_memcpy(w->meet, &row.vector);
-        gsl_blas_dtrsv(CblasUpper, CblasTrans, CblasNonUnit, &factor.matrix, w->meet);
-        trace += pow(gsl_blas_dnrm2(w->meet), 2);
+    gsl_matrix_memcpy(&solved.matrix, &response.matrix);
+    mf_triangular_right(&factor.matrix, &solved.matrix);
+    for (size_t a = 0; a < n; a++) {
+        gsl_vector_const_view row = gsl_matrix_const_row(&solved.matrix, a);
+        trace += pow(gsl_blas_dnrm2(&row.vector), 2);
     }
     return trace;
 }
@@ -332,7 +340,7 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
     CHECK(workspace_allocate(&w, system));
     gsl_matrix_view response = gsl_matrix_submatrix(w.rows, 0, 0, n, n);
     gsl_vector_view excess = gsl_vector_subvector(w.rhs, 0, n);
-    mf_imc_solve_rows(system, &response.matrix, &excess.vector);
+    CHECK(mf_imc_solve_rows(system, &response.matrix, &excess.vector));
     gsl_matrix_view prior = gsl_matrix_submatrix(w.rows, n, 0, 2 * n - 1, n);
     mf_imc_solve_prior(system, &prior.matrix);
     solution->strength = strength;
@@ -343,7 +351,7 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
         CHECK(mf_imc_solve_prior_excess(system, &prior.matrix, &left.vector));
         gsl_vector_scale(&left.vector, sqrt(strength));
     }
-    solution->misfit = solve_at(&w, solution->strength);
+    CHECK(solve_at(&w, solution->strength, &solution->misfit));
     solution->directions = count_directions(&w);
     for (size_t k = 0; k < n; k++)
         x[k] = gsl_vector_get(w.x, k);

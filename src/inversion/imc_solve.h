@@ -60,8 +60,9 @@ enum status mf_imc_solve(const struct imc_system *system, double strength, doubl
                          struct imc_solution *solution) MUST_USE;
 
 /// The whitened equations: B = L⁻¹ C/k_B T, shape [size, size], and L⁻¹ excess, shape [size],
-/// or NULL.
-void mf_imc_solve_rows(const struct imc_system *system, gsl_matrix *response, gsl_vector *excess);
+/// or NULL. Fails: NO_MEMORY.
+enum status mf_imc_solve_rows(const struct imc_system *system, gsl_matrix *response,
+                              gsl_vector *excess) MUST_USE;
 
 /// What the rows of the prior, as below, still ask of x: −D (phi − reference), that of the last
 /// difference of a curve of pairs −D phi, as the curve ends at 0 whatever the reference does.

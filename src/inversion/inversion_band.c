@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion.h"
 
-#include "inversion/gram.h"
+#include "inversion/principal.h"
+#include "inversion/products.h"
 
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <string.h>
@@ -51,7 +51,7 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
     gsl_matrix *response = gsl_matrix_alloc(size, size), *known = gsl_matrix_calloc(size, size);
     gsl_matrix_view to = gsl_matrix_view_array(covariance, size, size);
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
-    mf_imc_solve_rows(system, response, NULL);
+    CHECK(mf_imc_solve_rows(system, response, NULL));
     mf_imc_solve_prior(system, prior);
     CHECK(mf_gram(1 / birge, response, 0, known));
     gsl_matrix_memcpy(&to.matrix, known);
@@ -150,7 +150,7 @@ static enum status find_most_probable(const struct inversion *inversion,
     gsl_matrix *response = gsl_matrix_alloc(n, n);
     gsl_vector *excess = gsl_vector_alloc(n), *asked = gsl_vector_alloc(n);
     CHECK(response && excess && asked ? STATUS_OK : STATUS_NO_MEMORY);
-    mf_imc_solve_rows(system, response, excess);
+    CHECK(mf_imc_solve_rows(system, response, excess));
     gsl_blas_dgemv(CblasTrans, 1 / birge, response, excess, 0, asked);
     CHECK(mf_inversion_band_add_prior(inversion, *system, NULL, asked));
     multiply(inversion->course.band.inverse, n, asked->data, step);
@@ -263,16 +263,14 @@ static enum status find_flat(struct inversion *inversion) {
     const struct potential_grid *grid = inversion_grid(inversion);
     const struct inversion_band *band = &inversion->course.band;
     const size_t n = grid->known;
-    gsl_matrix *part = gsl_matrix_calloc(n, n), *vectors = gsl_matrix_alloc(n, n);
-    gsl_vector *values = gsl_vector_alloc(n);
-    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
-    CHECK(part && vectors && values && work ? STATUS_OK : STATUS_NO_MEMORY);
+    gsl_matrix *part = gsl_matrix_calloc(n, n), *vectors = gsl_matrix_alloc(n, INVERSE_FLAT);
+    gsl_vector *values = gsl_vector_alloc(INVERSE_FLAT);
+    CHECK(part && vectors && values ? STATUS_OK : STATUS_NO_MEMORY);
     for (size_t a = 0; a < n; a++)
         for (size_t b = 0; b < n; b++)
             if (grid->well_known[a] && grid->well_known[b])
                 gsl_matrix_set(part, a, b, band->covariance[a * n + b]);
-    gsl_eigen_symmv(part, values, vectors, work);
-    gsl_eigen_symmv_sort(values, vectors, GSL_EIGEN_SORT_VAL_DESC);
+    CHECK(mf_principal_find(part, values, vectors));
     for (size_t k = 0; k < INVERSE_FLAT; k++)
         for (size_t a = 0; a < n; a++) {
             double sum = 0;
@@ -285,7 +283,6 @@ done:
     gsl_matrix_free(part);
     gsl_matrix_free(vectors);
     gsl_vector_free(values);
-    gsl_eigen_symmv_free(work);
     return status;
 }
 
@@ -324,8 +321,8 @@ static enum status find_covariance(struct inversion *inversion, const struct imc
     mf_imc_solve_prior(system, prior);
     gsl_matrix_memcpy(middle, &scatter.matrix);
     CHECK(mf_gram(unit, prior, 1 / birge, middle));
-    gsl_blas_dsymm(CblasLeft, CblasLower, 1, middle, &inverse.matrix, 0, half);
-    gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &inverse.matrix, half, 0, &to.matrix);
+    CHECK(mf_symmetric_product(middle, &inverse.matrix, half));
+    CHECK(mf_product(&inverse.matrix, half, &to.matrix));
 done:
     gsl_matrix_free(prior);
     gsl_matrix_free(half);

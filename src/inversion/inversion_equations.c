@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "inversion/inversion_equations.h"
 
+#include "inversion/householder.h"
 #include "inversion/inversion_noise.h"
 #include "inversion/inversion_state.h"
 #include "inversion/inversion_states.h"
 #include "inversion/method_steps.h"
 #include "observe/kirkwood_buff.h"
 
-#include "inversion/gram.h"
+#include "inversion/products.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
@@ -118,7 +119,7 @@ static enum status fill_bins(const struct inversion_state *state, enum inversion
     TRY(fill_more(state, to));
     mf_inversion_noise_find(state, kind, to->more, to->noise);
     own.noise = to->noise;
-    mf_imc_solve_rows(&own, to->response, to->excess);
+    TRY(mf_imc_solve_rows(&own, to->response, to->excess));
     for (size_t a = 0; a < own.size; a++, to->row++) {
         if (!state->grid.seen[a])
             continue;
@@ -210,7 +211,7 @@ static enum status reduce(const struct inversion_equations *equations, double bi
     CHECK(reflect ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(filling_allocate(equations, &all));
     CHECK(fill_all(equations, &all));
-    gsl_linalg_QR_decomp(all.rows, reflect);
+    CHECK(mf_householder_factor(all.rows, reflect));
     gsl_linalg_QR_QTvec(all.rows, reflect, all.rhs);
     take_triangle(all.rows, all.rhs, to, system);
 done:
@@ -249,7 +250,7 @@ static enum status add_scatter(const struct inversion_state *state, enum inversi
     CHECK(t && factor ? STATUS_OK : STATUS_NO_MEMORY);
     mf_inversion_noise_find(state, kind, NULL, factor->data);
     own.noise = factor->data;
-    mf_imc_solve_rows(&own, t, NULL);
+    CHECK(mf_imc_solve_rows(&own, t, NULL));
     gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, factor, t);
     for (size_t a = 0; a < known; a++)
         for (size_t b = 0; b < known && !state->grid.seen[a]; b++)

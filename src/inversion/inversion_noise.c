@@ -5,7 +5,8 @@
 #include "inversion/inversion_state.h"
 #include "problem/group_kind.h"
 
-#include "inversion/gram.h"
+#include "inversion/products.h"
+#include "inversion/triangular.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
@@ -117,7 +118,7 @@ static enum status fill_allowed(const struct inversion_state *state, gsl_matrix 
     CHECK(mf_gram(1, rows, 0, prior));
     gsl_linalg_cholesky_decomp1(prior);
     gsl_matrix_transpose_memcpy(half, &response.matrix);
-    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, 1, prior, half);
+    CHECK(mf_triangular_left(prior, half));
     CHECK(mf_gram(1, half, 0, allowed));
 done:
     gsl_matrix_free(rows);

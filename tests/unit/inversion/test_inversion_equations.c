@@ -191,7 +191,7 @@ static void test_equations_scatter_by_errors_of_each_bin(void **state) {
         draw_excess(&made, target_variance, trial, excess);
         struct imc_system system = equations.system;
         system.excess = excess;
-        mf_imc_solve_rows(&system, response, whitened);
+        assert_ok(mf_imc_solve_rows(&system, response, whitened));
         for (size_t b = 0; b < KNOWN; b++)
             for (size_t a = 0; a < KNOWN; a++)
                 asked[b] += gsl_matrix_get(response, a, b) * gsl_vector_get(whitened, a);
