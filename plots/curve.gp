@@ -16,7 +16,7 @@ names = "of[\"r\"] = \"{/:Italic r}\"; of[\"q\"] = \"{/:Italic q}\"; of[\"time\"
 header(n) = system(sprintf("awk -F '\t' 'BEGIN { " . names . "} /^#/ && NF > 1 { sub(/^# */, \"\"); h = $%d; ", n) . \
     "gsub(/\\^2/, \"²\", h); gsub(/\\^3/, \"³\", h); " . \
     "gsub(/k_B\\.T_0/, \"ENERGY\", h); gsub(/[{}_@&~^\\\\]/, \" \", h); gsub(/ENERGY[.]?/, \"{/:Italic k}_B{/:Italic T}_0 \", h); sub(/\\[1\\]$/, \"\", h); " . \
-    "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \
+    "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); if (h ~ /\\[.*\\/.*\\]/) { sub(/\\[/, \" / (\", h); sub(/\\]/, \")\", h) } sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \
     "gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); " . \
     "k = index(h \" \", \" \"); s = substr(h, 1, k - 1); print (s in of ? of[s] : s) substr(h, k); exit }'" . from(table))
 
@@ -33,12 +33,20 @@ stats table using (high(column(2), column(y) + 1.96 * known(y + 1))) name "H" no
 margin = H_max > L_min ? 0.05 * (H_max - L_min) : 0.5
 # What is never below 0 begins there, unless it is all far above.
 stats table using (y == 4 ? low(column(2), column(4)) : $2) name "V" nooutput
+P_min = L_min
+P_max = H_max
 do for [i = 1:words(pairwise)] {
     n = pair_column(i)
-    stats table using (column(n) - 1.96 * known(n + 1)):(column(n) + 1.96 * known(n + 1)) name "P" nooutput
-    L_min = low(L_min, P_min_x)
-    V_min = low(V_min, P_min_x)
-    H_max = high(H_max, P_max_y)
+    stats table using (column(n) - 1.96 * known(n + 1)):(column(n) + 1.96 * known(n + 1)) name "S" nooutput
+    P_min = low(P_min, S_min_x)
+    P_max = high(P_max, S_max_y)
+}
+# Parts that are much larger, as where types part, leave the figure, so that the whole is seen.
+if (pairwise ne "") {
+    all = H_max
+    L_min = high(P_min, -2 * all)
+    V_min = L_min
+    H_max = low(P_max, 3 * all)
 }
 begin = V_min >= 0 && V_min < H_max / 4 ? 0 : L_min - margin
 
@@ -53,6 +61,8 @@ do for [kind in kinds] {
     if (y == 4 || pairwise ne "") { set key tmargin right horizontal } else { unset key }
     plot table using 1:(band_low(y, y + 1)):(band_high(y, y + 1)) \
             with filledcurves @band linecolor rgb blue, \
+        for [i = 1:words(pairwise)] "" using 1:(band_low(pair_column(i), pair_column(i) + 1)):(band_high(pair_column(i), pair_column(i) + 1)) \
+            with filledcurves @band linecolor rgb colour_of(i), \
         for [i = 1:words(pairwise)] "" using 1:(column(pair_column(i))) with lines \
             title type_of(pair_column(i)) noenhanced linewidth 1.2 linecolor rgb colour_of(i), \
         "" using 1:y with lines title (y == 4 ? "result" : pairwise eq "" ? "" : "all") linewidth 2.2 linecolor rgb blue, \

@@ -145,7 +145,8 @@ seen(file, n) = rows_of(file) <= 4 * groups_of_rows ? file : \
 # The unit of column n as a text, "nm^{-1}" for "1/nm", or "" where there is none.
 unit_of(file, n) = system(sprintf("awk -F '\t' '/^#/ && NF > 1 { h = $%d; if (!sub(/^[^[]*\\[/, \"\", h)) h = \"1]\"; sub(/\\].*/, \"\", h); \
     if (h == \"1\") h = \"\"; if (sub(/^1\\//, \"\", h)) h = h \"^{-1}\"; gsub(/angstrom/, \"Å\", h); \
-    gsub(/lambda/, \"{/:Italic λ}\", h); gsub(/tau/, \"{/:Italic τ}\", h); print h; exit }'", n) . from(file))
+    if (h ~ /\\//) h = \"(\" h \")\"; sub(/\\^d/, \"^%d\", h); gsub(/k_B[.]T_0/, \"{/:Italic k}_B{/:Italic T}_0\", h); \
+    gsub(/lambda/, \"{/:Italic λ}\", h); gsub(/tau/, \"{/:Italic τ}\", h); print h; exit }'", n, dimensions) . from(file))
 per_unit(symbol, file, n) = unit_of(file, n) eq "" ? symbol : symbol . " / " . unit_of(file, n)
 # How the first column of a molecule's table is called.
 symbol_of(first) = first eq "theta" ? "{/:Italic θ}" : first eq "phi" ? "{/:Italic φ}" : first eq "time" ? "{/:Italic t}" : first eq "rho" ? "{/:Italic ρ}" : "{/:Italic r}"

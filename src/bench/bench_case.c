@@ -272,7 +272,8 @@ static struct variant *add(struct skips *skips, const struct bench_scene *scene,
     return variant;
 }
 
-/// Friction and noise are left out with the integrator that is made for them, and with their memory.
+/// Friction and noise are left out with the integrator that is made for them, and with their
+/// memory.
 static void leave_out_friction(struct simulation_setup *setup) {
     const bool keeps_inner_steps = mf_respa_acts(setup);
     setup->omega = NULL;

@@ -173,7 +173,8 @@ static void complete(struct system *system, struct json_object *scene) {
     const bool is_number =
         mf_json_numbers(scene, "temperature", &system->temperature, 1) == 1 && scene->item;
     if (!is_number || !(system->temperature > 0)) {
-        if (scene->item)
+        // What is no number is told where it is read.
+        if (scene->item && (is_number || !mf_json_has(scene, "temperature")))
             mf_json_fault(
                 scene, "temperature",
                 is_number && system->temperature < 0 ? "below 0 K: temperatures are in kelvins"

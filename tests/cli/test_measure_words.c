@@ -45,10 +45,11 @@ static void write_beside(struct temporary_folder *folder, double box, double shr
                              "y z vx vy vz\n",
                              t, ATOMS, box - t * shrink, box - t * shrink, box - t * shrink);
         for (int k = 0; k < ATOMS; k++)
-            length += (size_t)snprintf(
-                text + length, TEXT - length, "%d %d %s %g %g %g %g %g %g\n", k + 1, 1 + k % 2,
-                k % 2 ? second : "Ar 39.948", 20 * chance(&seed), 20 * chance(&seed), 20 * chance(&seed),
-                2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed));
+            length +=
+                (size_t)snprintf(text + length, TEXT - length, "%d %d %s %g %g %g %g %g %g\n",
+                                 k + 1, 1 + k % 2, k % 2 ? second : "Ar 39.948", 20 * chance(&seed),
+                                 20 * chance(&seed), 20 * chance(&seed), 2.4988e-3 * normal(&seed),
+                                 2.4988e-3 * normal(&seed), 2.4988e-3 * normal(&seed));
     }
     temporary_folder_write(folder, "a.dump", text, length);
 }
@@ -242,6 +243,16 @@ static void test_a_temperature_that_nothing_tells(void **state) {
     run_program_assert_code(&result, 2);
     assert_contains(result.err, "out/target.json: scene.temperature: missing: expected a number "
                                 "(K), as fit --target DIR takes it by --temperature");
+    // What is no number is not missing.
+    small_inputs_write(*state, "run.json",
+                       "{\"units\": \"nm-ps\", \"target\": {\"rdf\": {\"file\": "
+                       "\"out/rdf.tsv\"}}, \"scene\": {\"density\": 3, "
+                       "\"temperature\": \"300 K\"}}",
+                       NULL, NULL);
+    RUN_PROGRAM(&result, "fit", "run.json", "-o", "fit");
+    run_program_assert_code(&result, 2);
+    assert_contains(result.err, "scene.temperature: expected a number, found the text \"300 K\"");
+    assert_without("missing");
 }
 
 /// Atoms are called Ar, types X and Y: LAMMPS's numbers are all that there is.
