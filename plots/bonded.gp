@@ -42,7 +42,7 @@ do for [kind in kinds] {
     eval name_axis(energy_axis, 0.024)
     set key at screen 0.97, screen 0.97 right top vertical maxrows 1 samplen 2 width -1
     eval part_title(0.955)
-    if (columns > 1) { eval iteration_bar(part eq "" ? 0 : 0.19, 1.085) }
+    if (columns > 1) { eval iteration_bar(part eq "" ? 0 : low(0.05 + 0.014 * strlen(part), 0.19), 1.085) }
     plot for [k = oldest:columns:every] history \
             using 1:(kJ * column(k)):(iteration_of(k)) with lines linewidth 0.9 linecolor palette, \
         @show_band table using 1:(is_shown(3) ? kJ * $2 : NaN) with lines title "result" \

@@ -129,7 +129,7 @@ do for [kind in kinds] {
     set object 1 rectangle from 0, 0 to edge(1), edge(2) front fillstyle empty border rgb ink linewidth 0.8
     if (obstacle(0) > 0) { set object 2 circle at obstacle(1), obstacle(2) size obstacle(0) behind fillstyle solid 1 border rgb ink fillcolor rgb 0xd9d9d9 }
     set xlabel axis("x") . (dimensions < 3 ? "" : slab < depth ? \
-        sprintf("  (a slab of %.2g; pale: its back)", nm > 0 ? nm * slab : slab) : "  (pale: far along {/:Italic z})")
+        sprintf("  (a slab of %.2g %s along {/:Italic z}; pale: its back)", nm > 0 ? nm * slab : slab, nm > 0 ? "nm" : "{/:Italic λ}") : "  (pale: far along {/:Italic z})")
     set ylabel axis("y")
     if (nm > 0) {
         step = step_of(low(edge(1), edge(2)) * nm / 3)
