@@ -21,7 +21,9 @@ for seed in ${SEEDS:-1 2 3}; do
 done
 "$mesofit" compare out/*-[0-9] -o out/compare
 for method in original memetic gauss-newton imc ibi; do
-    MESOFIT=$mesofit ./course.sh "out/$method-1"
+    for fit in out/"$method"-[0-9]; do
+        MESOFIT=$mesofit ./course.sh "$fit"
+    done
 done
 ./without_ramp.sh out/original-[0-9] out/memetic-[0-9] out/imc-[0-9]
 gnuplot -d error_against_time.gp

@@ -152,6 +152,7 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     NEW_ARRAY(grid->empty, grid->pairs);
     NEW_ARRAY(grid->known_of, grid->blocks);
     NEW_ARRAY(grid->stiffness, grid->pairs);
+    NEW_ARRAY(grid->rise, grid->pairs);
     NEW_ARRAY(grid->group, grid->groups);
     for (size_t pair = 0; pair < grid->pairs; pair++)
         CHECK(find_core(grid, problem, pair));
@@ -164,8 +165,10 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     index_known(grid, problem);
     NEW_ARRAY(grid->r, grid->points);
     place_points(grid, bins);
-    for (size_t pair = 0; pair < grid->pairs; pair++)
+    for (size_t pair = 0; pair < grid->pairs; pair++) {
         grid->stiffness[pair] = mf_potential_grid_stiffness(grid, problem, pair);
+        grid->rise[pair] = mf_potential_grid_rise(grid, problem, pair);
+    }
     CHECK(mf_potential_grid_find_shared(grid, problem));
     CHECK(mf_potential_grid_check_known(grid, problem));
 done:
@@ -179,6 +182,7 @@ void mf_potential_grid_clear(struct potential_grid *grid) {
     mf_memory_free(grid->empty);
     mf_memory_free(grid->known_of);
     mf_memory_free(grid->stiffness);
+    mf_memory_free(grid->rise);
     mf_memory_free(grid->known_point);
     mf_memory_free(grid->known_bin);
     mf_memory_free(grid->well_known);
@@ -229,7 +233,9 @@ void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double 
             memset(block, 0, (grid->bins + 1) * sizeof *block);
             continue;
         }
-        const double slope = find_slope(grid, pair, r, block);
+        double slope = find_slope(grid, pair, r, block);
+        if (slope > 0) // a well whose inner side no bin knows
+            slope = -grid->rise[pair];
         mf_core_fill(r + empty, block + empty, first - empty, slope, 0);
         mf_core_fill(r, block, empty, slope, grid->stiffness[pair]);
         block[grid->bins] = 0;

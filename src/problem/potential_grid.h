@@ -33,6 +33,7 @@ struct potential_grid {
                          ///< another state's
     double *r;           ///< shape [points] [λ], of angles [degrees]
     double *stiffness;   ///< shape [pairs]: of the core; 0 where what is known keeps pairs away
+    double *rise; ///< shape [pairs]: −Φ' into the core, where Φ falls towards it [k_B T_0/λ]
     struct inverse_law beside; ///< what acts with it in samples; none if an engine has it itself
     /// The straight line of f(ρ), which is a potential of pairs: f less s ρ, and Φ plus 2 s w(r),
     /// are the same energy. Shape [known], or NULL without both.
@@ -95,6 +96,12 @@ enum status mf_potential_grid_table_pair(const struct potential_grid *grid, cons
 /// What the known part counts as in a bin of its pair type, of a uniform density in it:
 /// −k_B T ln⟨exp(−Φ/k_B T)⟩, and no more than a height at which there are no pairs.
 double mf_potential_grid_known(const struct inverse_problem *problem, size_t pair, size_t bin);
+
+/// −Φ' into the core of a pair type by how g falls there from its first bin with pairs to the next,
+/// or to a twentieth: by the mean force, less what is known. Where the inner side of a well at
+/// contact is narrower than a bin, Φ falls towards the core, and pairs would be lost in it.
+double mf_potential_grid_rise(const struct potential_grid *grid,
+                              const struct inverse_problem *problem, size_t pair);
 
 /// Curvature of the core of a pair type: 0 where the known part rises into it by
 /// more than that by itself.

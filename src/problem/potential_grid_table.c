@@ -100,6 +100,20 @@ double mf_potential_grid_stiffness(const struct potential_grid *grid,
     return away ? 0 : problem->core_stiffness;
 }
 
+double mf_potential_grid_rise(const struct potential_grid *grid,
+                              const struct inverse_problem *problem, size_t pair) {
+    static const double rare = 0.05;
+    const size_t first = grid->core[pair];
+    const double *g = problem->targets.target[TARGET_RDF].value + pair * grid->bins;
+    if (first == 0 || first == grid->bins || !(g[first] > 0))
+        return 0;
+    const double rise =
+        problem->scene.temperature * log(g[first] / fmax(g[first - 1], rare * g[first])) -
+        (mf_potential_grid_known(problem, pair, first - 1) -
+         mf_potential_grid_known(problem, pair, first));
+    return fmax(0, rise) / problem->targets.bins.width;
+}
+
 enum status mf_potential_grid_check_known(const struct potential_grid *grid,
                                           const struct inverse_problem *problem) {
     const double most = too_high * problem->scene.temperature;

@@ -197,7 +197,8 @@ static void test_potential_grid_starts_from_the_curve_when_there_is_one(void **s
 static void test_potential_grid_core_is_the_parabola_when_completed(void **state) {
     (void)state;
     double target[BINS], phi[BINS + 1];
-    // Falling and rising at the first known point: the core never attracts.
+    // Falling and rising at the first known point: the core never attracts, and behind the inner
+    // side of a well, which no bin knows, g is a twentieth.
     static const double slopes[] = {-30, 0, 25};
     make_target(target);
     const struct inverse_problem problem = make_problem(target);
@@ -207,7 +208,7 @@ static void test_potential_grid_core_is_the_parabola_when_completed(void **state
         for (int k = CORE; k <= BINS; k++)
             phi[k] = 2 + slopes[s] * (grid.r[k] - grid.r[CORE]);
         mf_potential_grid_complete(&grid, phi);
-        const double push = fmax(0, -slopes[s]);
+        const double push = slopes[s] > 0 ? 1.3 * log(20) / 0.1 : -slopes[s];
         for (int k = 0; k < CORE; k++) {
             const double depth = grid.r[CORE] - grid.r[k];
             assert_close(phi[k], 2 + push * depth + 1000 * depth * depth, 1e-9);
@@ -216,6 +217,26 @@ static void test_potential_grid_core_is_the_parabola_when_completed(void **state
         assert_identical(phi[BINS], 0.0);
         mf_potential_grid_clear(&grid);
     }
+}
+
+/// Few pairs of a bin before the first known one tell how deep the inner side of a well is.
+static void test_potential_grid_core_rises_as_g_falls(void **state) {
+    (void)state;
+    double target[BINS], error[BINS], phi[BINS + 1];
+    struct potential_grid grid;
+    make_target(target);
+    for (int k = 0; k < BINS; k++)
+        error[k] = 1e-3;
+    target[CORE - 1] = error[CORE - 1] = 0.2 * target[CORE];
+    struct inverse_problem problem = make_problem(target);
+    problem.targets.target[TARGET_RDF].error = error;
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE);
+    for (int k = CORE; k <= BINS; k++)
+        phi[k] = 3 * (grid.r[k] - grid.r[CORE]);
+    mf_potential_grid_complete(&grid, phi);
+    assert_close(phi[CORE - 1], 1.3 * log(5), 1e-9);
+    mf_potential_grid_clear(&grid);
 }
 
 static void test_potential_grid_table_is_smooth_and_repulsive_when_there_is_a_core(void **state) {
@@ -311,6 +332,7 @@ int main(void) {
         cmocka_unit_test(test_potential_grid_starts_from_the_mean_force_when_there_is_no_start),
         cmocka_unit_test(test_potential_grid_starts_from_the_curve_when_there_is_one),
         cmocka_unit_test(test_potential_grid_core_is_the_parabola_when_completed),
+        cmocka_unit_test(test_potential_grid_core_rises_as_g_falls),
         cmocka_unit_test(test_potential_grid_table_is_smooth_and_repulsive_when_there_is_a_core),
         cmocka_unit_test(test_potential_grid_virials_are_those_of_a_changed_table),
     };
