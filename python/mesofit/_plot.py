@@ -57,15 +57,18 @@ def _band(ax: Any, x: Array, y: Array, error: Array, colour: str) -> None:
 
 
 def _draw_compared(table: Table, ax: Any, part: str, colour: str) -> None:
-    """A target and the result, each with its band; of a pair of types both in its colour."""
+    """The result, and the target as points on it, each with its band; of a pair of types both in
+    its colour."""
     x = table[0]
-    for name, own, style in (("target", INK, "--" if part else "-"), ("result", COLOURS[0], "-")):
+    for name, own, style in (("result", COLOURS[0], "-"), ("target", INK, ".")):
         own = colour if part else own
-        label = part if part and name == "result" else f"{name} {part}".strip()
-        ax.plot(x, table[name], style, color=own, linewidth=1.4, label=label)
+        told = any(line.get_label() == "target" for line in ax.lines)  # by another pair's points
+        label = part if part and name == "result" else None if told else name
+        ax.plot(x, table[name], style, color=own, linewidth=1.4, markersize=3, label=label)
         if name + "_error" in table:
             _band(ax, x, table[name], table[name + "_error"], own)
-    ax.legend(frameon=False)
+    # g ends at 1, and the place below is free.
+    ax.legend(frameon=False, loc="lower right" if table.name.startswith("rdf") else "best")
 
 
 def _window(table: Table, column: str) -> tuple[float, float] | None:
@@ -74,7 +77,7 @@ def _window(table: Table, column: str) -> tuple[float, float] | None:
     depth = -float(y.min()) if len(y) else 0.0
     if column != "phi" or depth < 1e-4 * float(np.abs(y).max(initial=0.0)):
         return None
-    return -1.5 * depth, 6 * depth
+    return -1.5 * depth, 3 * depth
 
 
 def draw_table(table: Table, ax: Any = None, part: str = "", colour: str = "") -> Any:
@@ -104,6 +107,8 @@ def draw_table(table: Table, ax: Any = None, part: str = "", colour: str = "") -
         if window is not None:
             low, high = window if ax.get_autoscaley_on() else ax.get_ylim()  # of other pairs
             ax.set_ylim(min(low, window[0]), max(high, window[1]))
+            begin = 0.9 * float(x[table[values[0]] < 2 * ax.get_ylim()[1]].min())  # not the core
+            ax.set_xlim(left=begin if first == 0 else min(ax.get_xlim()[0], begin))
     name = values[0] if values else table.columns[1]
     unit = table.unit(name)
     label = _SYMBOLS.get(name, name)
@@ -127,6 +132,7 @@ def _draw_history(table: Table, ax: Any) -> None:
     for k, column in enumerate(column for column in ("error", "noise") if column in table):
         ax.semilogy(table[0], table[column], "o-", color=COLOURS[k], label=column, markersize=3)
     ax.legend(frameon=False)
+    ax.xaxis.get_major_locator().set_params(integer=True)
     _style(ax, table, "error")
 
 

@@ -49,8 +49,12 @@ def test_figures_are_drawn(fitted, simulated, matplotlib):
     assert np.array_equal(line[:, 1], fitted.potential["phi"], equal_nan=True)
     assert ax.lines[0].get_color() == "#0072b2"
     compared = fitted["rdf"].plot()
-    assert [text.get_text() for text in compared.get_legend().get_texts()] == ["target", "result"]
+    assert [text.get_text() for text in compared.get_legend().get_texts()] == ["result", "target"]
     assert len(fitted.plot().axes) >= 3
+    # The well fills the figure, and the core does not.
+    low, high = ax.get_ylim()
+    depth = -np.nanmin(fitted.potential["phi"])
+    assert high <= 3 * depth * (1 + 1e-12) and 0 < ax.get_xlim()[0] < line[np.nanargmin(line[:, 1]), 0]
     waves = mesofit.Table("structure_factor", ("q", "S", "vectors"), ("", "", ""), np.ones((3, 3)))
     assert len(waves.plot().lines) == 1  # how many vectors a bin has is no curve
     assert "<img src=" in simulated._repr_html_()
