@@ -15,8 +15,8 @@ names = "of[\"r\"] = \"{/:Italic r}\"; of[\"q\"] = \"{/:Italic q}\"; of[\"time\"
 # The name of column n and its unit, "q / lambda^{-1}" for "q[1/lambda]", "S" for "S[1]".
 header(n) = system(sprintf("awk -F '\t' 'BEGIN { " . names . "} /^#/ && NF > 1 { sub(/^# */, \"\"); h = $%d; ", n) . \
     "gsub(/\\^2/, \"²\", h); gsub(/\\^3/, \"³\", h); " . \
-    "gsub(/k_B\\.T_0/, \"ENERGY\", h); gsub(/[{}_@&~^\\\\]/, \" \", h); gsub(/ENERGY[.]?/, \"{/:Italic k}_B{/:Italic T}_0 \", h); sub(/\\[1\\]$/, \"\", h); " . \
-    "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); if (h ~ /\\[.*\\/.*\\]/) { sub(/\\[/, \" / (\", h); sub(/\\]/, \")\", h) } sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \
+    "if (h ~ /\\[[^1].*\\/.*\\]/) { sub(/\\[/, \" / (\", h); sub(/\\]/, \")\", h) } gsub(/k_B\\.T_0/, \"ENERGY\", h); gsub(/[{}_@&~^\\\\]/, \" \", h); gsub(/ENERGY[.]?/, \"{/:Italic k}_B{/:Italic T}_0 \", h); sub(/\\[1\\]$/, \"\", h); " . \
+    "if (sub(/\\[1\\//, \" / \", h)) sub(/\\]$/, \"^{-1}\", h); sub(/\\[/, \" / \", h); sub(/\\]/, \"\", h); " . \
     "gsub(/lambda/, \"λ\", h); gsub(/tau/, \"τ\", h); " . \
     "k = index(h \" \", \" \"); s = substr(h, 1, k - 1); print (s in of ? of[s] : s) substr(h, k); exit }'" . from(table))
 
@@ -37,7 +37,7 @@ P_min = L_min
 P_max = H_max
 do for [i = 1:words(pairwise)] {
     n = pair_column(i)
-    stats table using (column(n) - 1.96 * known(n + 1)):(column(n) + 1.96 * known(n + 1)) name "S" nooutput
+    stats table using (known(n) - 1.96 * known(n + 1)):(known(n) + 1.96 * known(n + 1)) name "S" nooutput
     P_min = low(P_min, S_min_x)
     P_max = high(P_max, S_max_y)
 }

@@ -257,14 +257,16 @@ static bool print_field(const struct topic *topics, size_t count, const char *pa
     return found;
 }
 
-/// The names from which "name" chooses, as of "method.name"; false if the path is another.
+/// The names from which "name" chooses, of "method.name" and "weight.name"; false if the path is
+/// another.
 static bool print_choices(const struct topic *topics, size_t count, const char *path) {
     char outer[256], home[64];
     const char *const dot = strrchr(path, '.');
     if (dot == NULL || strcmp(dot, ".name") != 0)
         return false;
     snprintf(outer, sizeof outer, "%.*s", (int)(dot - path), path);
-    if (!find_object(topics, count, outer, home) || !is_group(topics, count, home))
+    if (!find_object(topics, count, outer, home) ||
+        (strcmp(home, "method") != 0 && strcmp(home, "weight") != 0))
         return false;
     printf("name (%s): one of\n", home);
     for (size_t k = 0; k < count; k++)

@@ -53,9 +53,9 @@ enum status mf_inversion_band_covariance(const struct imc_system *system, double
     CHECK(prior && response && known ? STATUS_OK : STATUS_NO_MEMORY);
     CHECK(mf_imc_solve_rows(system, response, NULL));
     mf_imc_solve_prior(system, prior);
-    CHECK(mf_gram(1 / birge, response, 0, known));
+    CHECK(mf_products_gram(1 / birge, response, 0, known));
     gsl_matrix_memcpy(&to.matrix, known);
-    CHECK(mf_gram(unit, prior, 1, &to.matrix));
+    CHECK(mf_products_gram(unit, prior, 1, &to.matrix));
     // Rounding may leave it not positive: then there is no band.
     if (gsl_linalg_cholesky_decomp1(&to.matrix) != GSL_SUCCESS ||
         gsl_linalg_cholesky_invert(&to.matrix) != GSL_SUCCESS)
@@ -132,7 +132,7 @@ enum status mf_inversion_band_add_prior(const struct inversion *inversion, struc
     CHECK(mf_imc_solve_prior_excess(&system, prior, left));
     gsl_blas_dgemv(CblasTrans, unit, prior, left, 1, asked);
     if (normal)
-        CHECK(mf_gram(unit, prior, 1, normal));
+        CHECK(mf_products_gram(unit, prior, 1, normal));
 done:
     gsl_matrix_free(prior);
     gsl_vector_free(left);
@@ -320,9 +320,9 @@ static enum status find_covariance(struct inversion *inversion, const struct imc
     CHECK(prior && half && middle ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_prior(system, prior);
     gsl_matrix_memcpy(middle, &scatter.matrix);
-    CHECK(mf_gram(unit, prior, 1 / birge, middle));
-    CHECK(mf_symmetric_product(middle, &inverse.matrix, half));
-    CHECK(mf_product(&inverse.matrix, half, &to.matrix));
+    CHECK(mf_products_gram(unit, prior, 1 / birge, middle));
+    CHECK(mf_products_symmetric(middle, &inverse.matrix, half));
+    CHECK(mf_products_find(&inverse.matrix, half, &to.matrix));
 done:
     gsl_matrix_free(prior);
     gsl_matrix_free(half);

@@ -230,7 +230,7 @@ enum status mf_inversion_equations_without(const struct inversion_equations *equ
     NEW_ARRAY(all.more, known);
     CHECK(filling_allocate(equations, &all));
     CHECK(fill_all(equations, &all));
-    CHECK(mf_gram(1 / birge, all.rows, 0, normal));
+    CHECK(mf_products_gram(1 / birge, all.rows, 0, normal));
     gsl_blas_dgemv(CblasTrans, 1 / birge, all.rows, all.rhs, 0, asked);
 done:
     filling_free(&all);
@@ -257,7 +257,7 @@ static enum status add_scatter(const struct inversion_state *state, enum inversi
             gsl_matrix_set(t, a, b, 0);
     mf_inversion_noise_find(state, mf_inversion_noise_of_band(state, kind), NULL, factor->data);
     gsl_blas_dtrmm(CblasLeft, CblasLower, CblasTrans, CblasNonUnit, 1, factor, t);
-    CHECK(mf_gram(1, t, 1, &to.matrix));
+    CHECK(mf_products_gram(1, t, 1, &to.matrix));
 done:
     gsl_matrix_free(t);
     gsl_matrix_free(factor);

@@ -115,11 +115,11 @@ static enum status fill_allowed(const struct inversion_state *state, gsl_matrix 
     gsl_matrix *half = gsl_matrix_alloc(known, known), *prior = gsl_matrix_alloc(known, known);
     CHECK(rows && half && prior ? STATUS_OK : STATUS_NO_MEMORY);
     mf_imc_solve_prior(&system, rows);
-    CHECK(mf_gram(1, rows, 0, prior));
+    CHECK(mf_products_gram(1, rows, 0, prior));
     gsl_linalg_cholesky_decomp1(prior);
     gsl_matrix_transpose_memcpy(half, &response.matrix);
     CHECK(mf_triangular_left(prior, half));
-    CHECK(mf_gram(1, half, 0, allowed));
+    CHECK(mf_products_gram(1, half, 0, allowed));
 done:
     gsl_matrix_free(rows);
     gsl_matrix_free(half);

@@ -13,6 +13,7 @@
 #include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 enum { MORE = 6, MOST_ROUNDS = 200 };
 static const double exact = 1e-11;
@@ -49,13 +50,15 @@ static bool iteration_allocate(struct iteration *own, size_t n, size_t count) {
            own->work;
 }
 
-/// Columns of the matrix from all over it, to begin with.
-static void take_columns(const gsl_matrix *matrix, struct iteration *own) {
-    for (size_t c = 0; c < own->count; c++) {
-        gsl_vector_const_view column =
-            gsl_matrix_const_column(matrix, (2 * c + 1) * own->n / (2 * own->count));
-        gsl_matrix_set_col(own->image, c, &column.vector);
-    }
+/// Images of vectors of chance, which miss no direction.
+static enum status begin(const gsl_matrix *matrix, struct iteration *own) {
+    uint32_t number = 1;
+    for (size_t k = 0; k < own->n; k++)
+        for (size_t c = 0; c < own->count; c++) {
+            number = number * 1664525u + 1013904223u;
+            gsl_matrix_set(own->q, k, c, number * 0x1p-32 - 0.5);
+        }
+    return mf_products_find(matrix, own->q, own->image);
 }
 
 /// Q ← orthogonal vectors that span the images; those that are none any more are any others.
@@ -88,11 +91,11 @@ enum status mf_principal_find(const gsl_matrix *matrix, gsl_vector *values, gsl_
     const size_t n = matrix->size1, wanted = values->size;
     const bool there = iteration_allocate(&own, n, wanted + MORE < n ? wanted + MORE : n);
     CHECK(there ? STATUS_OK : STATUS_NO_MEMORY);
-    take_columns(matrix, &own);
+    CHECK(begin(matrix, &own));
     double change = INFINITY;
     for (int round = 0; round < MOST_ROUNDS && change > exact; round++) {
         make_orthogonal(&own);
-        CHECK(mf_product(matrix, own.q, own.image));
+        CHECK(mf_products_find(matrix, own.q, own.image));
         change = turn(&own, wanted);
     }
     gsl_vector_const_view first = gsl_vector_const_subvector(own.value, 0, wanted);

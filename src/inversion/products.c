@@ -25,7 +25,7 @@ static void add_rows(const gsl_matrix *a, size_t first, size_t end, double *sum)
     }
 }
 
-enum status mf_gram(double alpha, const gsl_matrix *a, double beta, gsl_matrix *c) {
+enum status mf_products_gram(double alpha, const gsl_matrix *a, double beta, gsl_matrix *c) {
     const size_t n = a->size2;
     double *sum = mf_memory_zeroed(BLOCK * n, sizeof *sum);
     if (sum == NULL)
@@ -101,11 +101,11 @@ static enum status multiply(const gsl_matrix *a, const gsl_matrix *b, gsl_matrix
     return STATUS_OK;
 }
 
-enum status mf_product(const gsl_matrix *a, const gsl_matrix *b, gsl_matrix *c) {
+enum status mf_products_find(const gsl_matrix *a, const gsl_matrix *b, gsl_matrix *c) {
     return multiply(a, b, c, add_row);
 }
 
-enum status mf_symmetric_product(gsl_matrix *a, const gsl_matrix *b, gsl_matrix *c) {
+enum status mf_products_symmetric(gsl_matrix *a, const gsl_matrix *b, gsl_matrix *c) {
     for (size_t i = 0; i < a->size1; i++)
         for (size_t j = 0; j < i; j++)
             gsl_matrix_set(a, j, i, gsl_matrix_get(a, i, j));

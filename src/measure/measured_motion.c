@@ -354,10 +354,27 @@ static double temperature_of(double squares, double freedom) {
     return squares / freedom * 1e3 / (UNITS_BOLTZMANN * UNITS_AVOGADRO);
 }
 
+/// Kinetic temperatures [K] of the beads of each type; `all` is the mass of what rests together, of
+/// whose freedom a bead of mass m has lost a share m/all, or INFINITY.
+static enum status add_of_types(struct measured_motion *motion,
+                                const struct trajectory_frame *beads, const double *momentum,
+                                double all) {
+    OWNED double *found = NULL;
+    TRY_ARRAY(found, 2 * motion->of_type.columns);
+    double *const freedom = found + motion->of_type.columns;
+    for (size_t k = 0; k < beads->atoms; k++)
+        for (int d = 0; d < 3; d++, freedom[motion->type[k]] += 1 - motion->mass[k] / all)
+            found[motion->type[k]] +=
+                motion->mass[k] * pow(beads->velocity[k][d] - momentum[d] / all, 2);
+    for (size_t type = 0; type < motion->of_type.columns; type++)
+        found[type] = temperature_of(found[type], freedom[type]);
+    return mf_sample_series_add(&motion->of_type, found);
+}
+
 /// Kinetic temperature [K] of the beads' velocities, about that of their centre of mass if it
 /// rests.
-static double find_temperature(const struct measured_motion *motion,
-                               const struct trajectory_frame *beads) {
+static enum status add_temperatures(struct measured_motion *motion,
+                                    const struct trajectory_frame *beads) {
     const double *const mass = motion->mass;
     double momentum[3] = {0}, squares = 0, all = 0;
     for (size_t k = 0; k < beads->atoms; k++) {
@@ -370,21 +387,10 @@ static double find_temperature(const struct measured_motion *motion,
     for (int d = 0; motion->together && d < 3; d++)
         squares -= momentum[d] * momentum[d] / all;
     const double freedom = 3 * ((double)beads->atoms - (motion->together ? 1 : 0));
-    return temperature_of(squares, freedom);
-}
-
-/// Those of the beads of each type.
-static enum status add_temperatures(struct measured_motion *motion,
-                                    const struct trajectory_frame *beads) {
-    OWNED double *found = NULL;
-    TRY_ARRAY(found, 2 * motion->of_type.columns);
-    double *const freedom = found + motion->of_type.columns;
-    for (size_t k = 0; k < beads->atoms; k++)
-        for (int d = 0; d < 3; d++, freedom[motion->type[k]]++)
-            found[motion->type[k]] += motion->mass[k] * pow(beads->velocity[k][d], 2);
-    for (size_t type = 0; type < motion->of_type.columns; type++)
-        found[type] = temperature_of(found[type], freedom[type]);
-    return mf_sample_series_add(&motion->of_type, found);
+    const double temperature = temperature_of(squares, freedom);
+    TRY(mf_sample_series_add(&motion->temperature, &temperature));
+    return motion->type ? add_of_types(motion, beads, momentum, motion->together ? all : INFINITY)
+                        : STATUS_OK;
 }
 
 static enum status add_pairs(struct measured_motion *motion, const struct trajectory_frame *beads,
@@ -416,13 +422,8 @@ enum status mf_measured_motion_add(struct measured_motion *motion,
     if (motion->begun)
         TRY(follow(motion, beads, configuration));
     motion->has_velocities = motion->has_velocities || beads->has_velocities;
-    if (beads->has_velocities && motion->is_kinetic) {
-        const double temperature = find_temperature(motion, beads);
-        TRY(mf_sample_series_add(&motion->temperature, &temperature));
-        if (motion->type)
-            TRY(add_temperatures(motion, beads));
-    }
-    return STATUS_OK;
+    return beads->has_velocities && motion->is_kinetic ? add_temperatures(motion, beads)
+                                                       : STATUS_OK;
 }
 
 /// Differences of positions were divided by the interval of the first two frames, whose times are

@@ -189,6 +189,8 @@ static void doubt_equipartition(struct progress *progress, const struct measure_
     for (size_t type = 0; type < series->columns && series->count > 0; type++) {
         double error;
         const double found = temperature_of(result, type, &error);
+        if (found == 0) // walls
+            continue;
         if (found < cold)
             cold = found, cold_error = error, coldest = type;
         if (found > hot)

@@ -53,11 +53,20 @@ double mf_measure_output_density(const struct measure_result *result) {
     return (double)result->mapping->beads / mf_box_volume(&box);
 }
 
-/// [K]: as given, or the kinetic one; NAN if neither is known.
+double mf_measure_output_temperature_scatter(const struct measure_result *result) {
+    const double frames = (double)result->measured->motion.temperature.count;
+    return sqrt(2 / (3 * (double)result->mapping->beads * frames));
+}
+
+/// [K]: as given, or the kinetic one; NAN if neither is known, or one frame alone tells it, and not
+/// well.
 double mf_measure_output_temperature(const struct measure_result *result) {
+    static const double tolerance = 0.03;
     const double given = result->request->temperature;
     const struct measured_motion *const motion = &result->measured->motion;
-    if (!isnan(given) || !motion->is_thermal)
+    const bool vague =
+        motion->temperature.count < 2 && mf_measure_output_temperature_scatter(result) > tolerance;
+    if (!isnan(given) || !motion->is_thermal || vague)
         return given;
     return mf_measured_mean(&motion->temperature, NULL);
 }

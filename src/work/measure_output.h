@@ -28,6 +28,9 @@ bool mf_measure_output_masses_may_differ(const struct measure_result *result);
 /// no box, or a single one.
 bool mf_measure_output_is_alone(const struct measure_result *result);
 
+/// Relative error of the kinetic temperature by equipartition, if all frames were independent.
+double mf_measure_output_temperature_scatter(const struct measure_result *result);
+
 /// Number density of all beads [1/nm³]; temperature [K], as given or the kinetic one, NAN if
 /// neither is known; mean mass of a type's beads [u], NAN if it is not known.
 double mf_measure_output_density(const struct measure_result *result);

@@ -286,7 +286,9 @@ static const char *without_temperature(const struct measure_result *result) {
     if (result->mapping->broken)
         return "velocities of parts of molecules do not tell it where bonds of fixed length hold "
                "them";
-    return motion->mass == NULL ? "masses are not known" : "one bead does not tell it";
+    return motion->mass == NULL            ? "masses are not known"
+           : motion->temperature.count > 0 ? "the velocities of one frame do not tell it within 3 %"
+                                           : "one bead does not tell it";
 }
 
 /// A temperature that is given, and that of the velocities: they are those of whole beads, so that
@@ -299,13 +301,12 @@ static void print_temperature(struct progress *progress, const struct measure_re
     double error;
     const double given = result->request->temperature, mean = mf_measured_mean(kinetic, &error);
     // Few frames may agree by chance: no less than by equipartition.
-    const double least =
-        mean * sqrt(2 / (3 * (double)result->mapping->beads * (double)kinetic->count));
+    const double least = mean * mf_measure_output_temperature_scatter(result);
     const bool off = kinetic->count > 0 && fabs(given - mean) > tolerance * given &&
                      !(fabs(given - mean) <= errors * fmax(error, least));
     char text[NUMBER_TEXT_SIZE];
-    mf_number_text(mean, error, text);
-    if (isnan(given) && (kinetic->count == 0 || !motion->is_thermal))
+    mf_number_text(mean, isnan(error) ? least : error, text);
+    if (isnan(mf_measure_output_temperature(result)))
         mf_progress_print(
             progress,
             "unknown temperature (%s): give it by --temperature, or in \"scene\" of target.json",

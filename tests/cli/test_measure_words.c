@@ -6,6 +6,7 @@
 #include "shared/small_inputs.h"
 #include "shared/testing.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,11 +95,46 @@ static void test_types_of_different_temperatures(void **state) {
     assert_without("by velocities and masses");
 }
 
-static void test_one_frame_has_a_temperature(void **state) {
+/// Drift is no heat, and a bead with half of all mass has half of a bead's freedom.
+static void test_types_that_drift_together(void **state) {
+    static char text[TEXT];
+    static const double heat = 0.015794; // sqrt(k_B T) at 300 K [Å/fs sqrt(u)]
+    size_t length = 0;
+    unsigned seed = 3;
+    for (int t = 0; t < FRAMES; t++) {
+        double momentum = 0, v[ATOMS][3];
+        for (int d = 0; d < 3; d++, momentum = 0) {
+            for (int k = 0; k < ATOMS; k++) {
+                const double mass = k == 0 ? 2000 : 40;
+                v[k][d] = normal(&seed) * heat / sqrt(mass);
+                momentum += mass * v[k][d];
+            }
+            for (int k = 0; k < ATOMS; k++)
+                v[k][d] += 0.01 - momentum / (2000 + 40 * (ATOMS - 1));
+        }
+        length +=
+            (size_t)snprintf(text + length, TEXT - length,
+                             "ITEM: TIMESTEP\n%d\nITEM: NUMBER OF ATOMS\n%d\nITEM: BOX BOUNDS "
+                             "pp pp pp\n0 20\n0 20\n0 20\nITEM: ATOMS id element mass x y z vx "
+                             "vy vz\n",
+                             t, ATOMS);
+        for (int k = 0; k < ATOMS; k++)
+            length +=
+                (size_t)snprintf(text + length, TEXT - length, "%d %s %d %d %d %g %.8g %.8g %.8g\n",
+                                 k + 1, k == 0 ? "Au" : "Ar", k == 0 ? 2000 : 40, k % 4 * 5,
+                                 k / 4 % 4 * 5, k / 16 * 5.0, v[k][0], v[k][1], v[k][2]);
+    }
+    temporary_folder_write(*state, "a.dump", text, length);
+    MEASURE("--file-units", "real", "--file-time-step", "0.01");
+    assert_without("by velocities and masses");
+}
+
+/// Sixty beads have 300 K within a tenth: no temperature for a potential.
+static void test_one_frame_of_few_beads_tells_no_temperature(void **state) {
     write_argon(*state);
     MEASURE("--file-units", "real", "--end", "0", "--file-time-step", "0.01");
     assert_contains(result.err, "there is one frame");
-    assert_contains(result.err, "K by the velocities of the beads");
+    assert_contains(result.err, "unknown temperature (the velocities of one frame do not tell it");
 }
 
 /// D of two windows has no error, and is no target.
@@ -318,7 +354,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(test_a_temperature_that_velocities_have_not),
         TEST(test_types_of_different_temperatures),
-        TEST(test_one_frame_has_a_temperature),
+        TEST(test_types_that_drift_together),
+        TEST(test_one_frame_of_few_beads_tells_no_temperature),
         TEST(test_three_frames_are_a_target),
         TEST(test_units_that_cannot_be),
         TEST(test_boxes_that_are_not_those_of_the_atoms),

@@ -19,7 +19,7 @@ class Steering(PageTest):
             json.dump(content, file)
 
     def test_damping_of_a_fit_is_changed(self):
-        self.write("run.json", water_fit(3))
+        self.write("run.json", water_fit(8))  # so many that a slow browser changes it before the last
         self.begin("live", "run.json", "--stay")
         self.press("start")
         damping = self.at("change-damping")

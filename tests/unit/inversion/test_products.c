@@ -30,7 +30,7 @@ static void test_squares_have_the_bits_of_gsl(void **state) {
         fill(c, 0, rng);
         gsl_matrix_memcpy(expected, c);
         gsl_blas_dsyrk(CblasLower, CblasTrans, cases[k][0], &a.matrix, cases[k][1], expected);
-        assert_ok(mf_gram(cases[k][0], &a.matrix, cases[k][1], c));
+        assert_ok(mf_products_gram(cases[k][0], &a.matrix, cases[k][1], c));
         for (size_t i = 0; i < COLUMNS; i++)
             for (size_t j = 0; j < COLUMNS; j++) // above the diagonal as it was
                 assert_identical(gsl_matrix_get(c, i, j), gsl_matrix_get(expected, i, j));
@@ -63,10 +63,10 @@ static void test_products_have_the_bits_of_gsl(void **state) {
         fill(b, 0.45 * k, rng);
         fill(square, 0.45 * k, rng);
         gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, &a.matrix, b, 0, expected);
-        assert_ok(mf_product(&a.matrix, b, c));
+        assert_ok(mf_products_find(&a.matrix, b, c));
         assert_same(c, expected);
         gsl_blas_dsymm(CblasLeft, CblasLower, 1, square, b, 0, wanted);
-        assert_ok(mf_symmetric_product(square, b, d));
+        assert_ok(mf_products_symmetric(square, b, d));
         assert_same(d, wanted);
     }
     gsl_matrix_free(wide);
