@@ -8,8 +8,7 @@
 #include <gsl/gsl_vector.h>
 
 /// A = Q R, as gsl_linalg_QR_decomp leaves it in A and `reflect`, with its bits, but for signs of
-/// zeros: of 1900 columns and
-/// the 5699 rows of equations over their prior in a sixth of its time.
+/// zeros: of 1900 columns, and the 5699 rows of equations over their prior, in a sixth of its time.
 /// @param[in,out] a        shape [m, n], m ≥ n
 /// @param[out]    reflect  shape [n]
 /// Fails: NO_MEMORY. Tested: test_householder.

@@ -8,7 +8,7 @@
 #include <gsl/gsl_vector.h>
 
 /// The largest eigenvalues λ of a positive matrix, largest first, and their eigenvectors of length
-/// 1: those of all others, which gsl_eigen_symmv finds, take 300 times as long at 1900 rows.
+/// 1. All of them, by gsl_eigen_symmv, took a third of an inversion's algebra at 1900 rows.
 /// @param[in]  matrix   shape [n, n], symmetric
 /// @param[out] values   shape [k], k ≤ n
 /// @param[out] vectors  shape [n, k]

@@ -46,7 +46,7 @@ enum status mf_products_gram(double alpha, const gsl_matrix *a, double beta, gsl
 
 /// Columns of B, packed.
 struct columns {
-    double *from; ///< shape [rows of B, COLUMNS]; what fills the last ones is 0
+    double *from; ///< shape [rows of B, COLUMNS]; the last ones may hold what is not read
     size_t first, count;
 };
 

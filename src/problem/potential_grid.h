@@ -97,12 +97,6 @@ enum status mf_potential_grid_table_pair(const struct potential_grid *grid, cons
 /// −k_B T ln⟨exp(−Φ/k_B T)⟩, and no more than a height at which there are no pairs.
 double mf_potential_grid_known(const struct inverse_problem *problem, size_t pair, size_t bin);
 
-/// −Φ' into the core of a pair type by how g falls there from its first bin with pairs to the next,
-/// or to a twentieth: by the mean force, less what is known. Where the inner side of a well at
-/// contact is narrower than a bin, Φ falls towards the core, and pairs would be lost in it.
-double mf_potential_grid_rise(const struct potential_grid *grid,
-                              const struct inverse_problem *problem, size_t pair);
-
 /// Curvature of the core of a pair type: 0 where the known part rises into it by
 /// more than that by itself.
 double mf_potential_grid_stiffness(const struct potential_grid *grid,

@@ -100,27 +100,6 @@ double mf_potential_grid_stiffness(const struct potential_grid *grid,
     return away ? 0 : problem->core_stiffness;
 }
 
-/// The largest g of a bin, of all states.
-static double most_pairs(const struct inverse_problem *problem, size_t bin) {
-    double most = problem->targets.target[TARGET_RDF].value[bin];
-    for (size_t s = 0; s < problem->states; s++)
-        most = fmax(most, problem->state[s]->targets.target[TARGET_RDF].value[bin]);
-    return most;
-}
-
-double mf_potential_grid_rise(const struct potential_grid *grid,
-                              const struct inverse_problem *problem, size_t pair) {
-    static const double rare = 0.05;
-    const size_t first = grid->core[pair], bin = pair * grid->bins + first;
-    if (first == 0 || first == grid->bins || !(most_pairs(problem, bin) > 0))
-        return 0;
-    const double g = most_pairs(problem, bin), before = most_pairs(problem, bin - 1);
-    const double rise = problem->scene.temperature * log(g / fmax(before, rare * g)) -
-                        (mf_potential_grid_known(problem, pair, first - 1) -
-                         mf_potential_grid_known(problem, pair, first));
-    return fmax(0, rise) / problem->targets.bins.width;
-}
-
 enum status mf_potential_grid_check_known(const struct potential_grid *grid,
                                           const struct inverse_problem *problem) {
     const double most = too_high * problem->scene.temperature;
