@@ -35,7 +35,7 @@ set yrange [-0.4:0.5]
 set ytics 0.2
 set ylabel "{/:Italic g} − {/:Italic g}_{target}" offset 0.5
 set xlabel "{/:Italic r} / {/:Italic λ}" offset 0, 0.4
-set key right top vertical samplen 1.6 noautotitle textcolor rgb "#222222" Left reverse
+set key right bottom vertical samplen 1.6 noautotitle textcolor rgb "#222222" Left reverse
 eval "plot 0 linewidth 0.8 linecolor rgb '#222222', " . draw("rdf.tsv", "1:($4 - $2)") . \
     ", for [m = 1:3] NaN with lines linewidth 3 linecolor rgb word(colours, m) title title[m]"
 
