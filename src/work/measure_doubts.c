@@ -189,8 +189,6 @@ static void doubt_equipartition(struct progress *progress, const struct measure_
     for (size_t type = 0; type < series->columns && series->count > 0; type++) {
         double error;
         const double found = temperature_of(result, type, &error);
-        if (found == 0) // walls
-            continue;
         if (found < cold)
             cold = found, cold_error = error, coldest = type;
         if (found > hot)
@@ -201,7 +199,8 @@ static void doubt_equipartition(struct progress *progress, const struct measure_
     mf_progress_print(
         progress,
         "mesofit: warning: by velocities and masses %s has %.4g K and %s %.4g K: is a "
-        "mass wrong? (or bonds of fixed length hold some)",
+        "mass wrong, or are some held, as walls or by bonds of fixed length? Then give the others' "
+        "by --temperature",
         result->mapping->type_name[coldest], cold, result->mapping->type_name[hottest], hot);
 }
 
