@@ -84,20 +84,20 @@ static struct comparison compare(const struct targets *targets, int kind,
 
 /// What one count makes of value k, by the nearest of the values first … end − 1 that has counts;
 /// of g(r) as its shell of three dimensions is smaller. 0 if none has.
-static double value_of_count(const struct comparison *of, size_t k, size_t first, size_t end) {
+static double value_of_count(const double *value, const double *error, const struct rdf_bins *bins,
+                             size_t k, size_t first, size_t end) {
     size_t nearest = end;
     for (size_t n = first; n < end; n++)
-        if (of->value[n] > 0 && of->error[n] > 0 &&
+        if (value[n] > 0 && error[n] > 0 &&
             (nearest == end || (n < k ? k - n : n - k) < (nearest < k ? k - nearest : nearest - k)))
             nearest = n;
     if (nearest == end)
         return 0;
-    const double there = of->error[nearest] * of->error[nearest] / of->value[nearest];
-    if (of->bins == NULL || !(of->bins->width > 0))
+    const double there = error[nearest] * error[nearest] / value[nearest];
+    if (bins == NULL || !(bins->width > 0))
         return there;
-    const size_t count = of->bins->count;
-    return there * pow(mf_rdf_bins_centre(of->bins, nearest % count) /
-                           mf_rdf_bins_centre(of->bins, k % count),
+    return there * pow(mf_rdf_bins_centre(bins, nearest % bins->count) /
+                           mf_rdf_bins_centre(bins, k % bins->count),
                        2);
 }
 
@@ -107,8 +107,9 @@ static double own_variance(const struct comparison *of, size_t k, size_t first, 
     const double error = known_or_0(of->error[k]), expected = fmax(0, of->target->value[k]);
     if (!of->counted || !isfinite(expected) || !(of->value[k] < expected))
         return error * error;
-    return of->value[k] > 0 ? error * error * expected / of->value[k]
-                            : expected * value_of_count(of, k, first, end);
+    return of->value[k] > 0
+               ? error * error * expected / of->value[k]
+               : expected * value_of_count(of->value, of->error, of->bins, k, first, end);
 }
 
 /// What χ² is made of, with the covariance σ_a² δ_ab + c_a c_b, of which c is the error that bins
@@ -156,8 +157,41 @@ static void find_stretch(const struct comparison *of, const struct verify_sectio
             find_probable(&known, chance * STRETCH / (2.0 * (double)section->count));
         const double misfit = sums.bins > 0 ? sums.square / sums.bins : 0;
         if (misfit * agreement->stretch.probable > agreement->stretch.misfit * probable)
-            agreement->stretch = (struct verify_stretch){first, last - first, misfit, probable};
+            agreement->stretch =
+                (struct verify_stretch){first, last - first, misfit, probable, false};
     }
+}
+
+/// Pairs in the core, where the target has none: what the samples of a fit do not judge, as it has
+/// no equations there. They are one number, as they came through one gap; of the target's counts,
+/// which are none, the error is that of those which the result expects. Fewer pairs than the
+/// target's few are no fault, as these tell nothing.
+static void find_core(const struct comparison *of, const struct verify_section *section,
+                      double chance, struct verify_agreement *agreement) {
+    const size_t end = section->first + section->count;
+    const struct statistics_independence one = {1, section->known.freedom};
+    const struct target *const target = of->target;
+    struct verify_stretch core = {.first = end, .core = true};
+    double more = 0, variance = 0;
+    for (size_t k = section->first - section->core; k < section->first; k++) {
+        const double r = mf_rdf_bins_centre(of->bins, k % of->bins->count);
+        const double value = of->value[k], wanted = fmax(0, target->value[k]);
+        const double count =
+            value_of_count(target->value, target->error, of->bins, k, section->first, end);
+        if (!(value > section->threshold) && !(wanted > section->threshold))
+            continue;
+        more += r * r * (value - fmax(wanted, section->threshold));
+        variance += pow(r, 4) * (fmax(target_variance(target, true, k, value), value * count) +
+                                 (1 + of->share) * own_variance(of, k, section->first, end));
+        core.first = k < core.first ? k : core.first;
+    }
+    if (!(more > 0) || !(variance > 0))
+        return;
+    core.count = section->first - core.first;
+    core.misfit = more * more / variance;
+    core.probable = find_probable(&one, chance * STRETCH / (2.0 * (double)section->count));
+    if (core.misfit * agreement->stretch.probable > agreement->stretch.misfit * core.probable)
+        agreement->stretch = core;
 }
 
 static struct verify_agreement assess(const struct targets *targets,
@@ -178,8 +212,10 @@ static struct verify_agreement assess(const struct targets *targets,
         .misfit = sums.bins > 0 ? (sums.square - sums.along * factor) / sums.bins : 0,
         .probable = find_probable(&section->known, chance),
         .part = {0, 1, section->first, section->count}};
-    if (section->kind == TARGET_RDF)
+    if (section->kind == TARGET_RDF) {
         find_stretch(&of, section, factor, chance, &agreement);
+        find_core(&of, section, chance, &agreement);
+    }
     return agreement;
 }
 

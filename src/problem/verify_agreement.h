@@ -24,6 +24,8 @@
 struct verify_section {
     int kind;
     size_t first, count; ///< of the target's values: those that tell of the potential
+    size_t core;      ///< values before them that have no pairs by the target, but for chance …
+    double threshold; ///< … and g that counts as none
     struct statistics_independence known;
 };
 
@@ -39,8 +41,9 @@ struct verify_sections {
 /// A few values beside each other.
 struct verify_stretch {
     size_t first, count; ///< of the target's values
-    double misfit;       ///< χ² by bin
+    double misfit;       ///< χ² by bin, of a core that of its pairs together
     double probable;     ///< what noise alone exceeds in one of a thousand over all stretches
+    bool core;           ///< pairs where the target has none
 };
 
 /// Of the section or part of a kind of targets that is least probable.

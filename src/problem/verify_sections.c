@@ -25,8 +25,9 @@ static struct verify_section *add(struct verify_sections *sections,
     return section;
 }
 
-static enum status add_pairs(const struct potential_grid *grid, const struct measurement *replicas,
-                             size_t count, struct verify_sections *sections) {
+static enum status add_pairs(const struct potential_grid *grid, double threshold,
+                             const struct measurement *replicas, size_t count,
+                             struct verify_sections *sections) {
     OWNED struct rdf *rdf = NULL;
     size_t known = 0;
     TRY_ARRAY(rdf, count);
@@ -39,8 +40,11 @@ static enum status add_pairs(const struct potential_grid *grid, const struct mea
         const size_t end = known + grid->known_of[pair];
         struct verify_section *const section = add(sections, grid, known, end, TARGET_RDF);
         known = end;
-        if (section)
-            TRY(mf_rdf_independence(rdf, count, section->first, section->count, &section->known));
+        if (section == NULL)
+            continue;
+        section->core = section->first - pair * grid->bins;
+        section->threshold = threshold;
+        TRY(mf_rdf_independence(rdf, count, section->first, section->count, &section->known));
     }
     return STATUS_OK;
 }
@@ -89,7 +93,7 @@ static enum status add_distributions(const struct inverse_problem *problem,
     if (pairs ? !targets_ask(&problem->targets, TARGET_RDF) : problem->bonded == 0)
         return STATUS_OK;
     TRY(mf_potential_grid_init(&grid, problem));
-    TRY(add_pairs(&grid, replicas, count, sections));
+    TRY(add_pairs(&grid, problem->core_threshold, replicas, count, sections));
     return add_groups(&grid, replicas, count, sections);
 }
 

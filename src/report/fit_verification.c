@@ -236,6 +236,20 @@ static void report_structure(const char *name, const struct rdf_bins *bins,
              name, distance->rms, distance->noise, where, state, cause);
 }
 
+/// Report pairs of a core, where the fit has no equations.
+static void report_core(const struct rdf_bins *bins, const struct verify_agreement *agreement,
+                        const struct units *units, char reason[INVERSE_REASON_SIZE]) {
+    const struct verify_stretch *core = &agreement->stretch;
+    char unit[UNITS_NAME_SIZE];
+    snprintf(reason, INVERSE_REASON_SIZE,
+             "the fit's samples agree with g(r), but in its verification pairs come as near as "
+             "r = %.3g%.8s, where the target has none (%.2g times the statistical error, by chance "
+             "up to %.2g): the potential of the core is too low; set a larger \"core.stiffness\", "
+             "or narrower bins (\"bin_width\") if the target has them",
+             mf_units_factor(units, "lambda") * mf_rdf_bins_centre(bins, core->first % bins->count),
+             mf_units_suffix(units, "lambda", unit), sqrt(core->misfit), sqrt(core->probable));
+}
+
 /// Whether the kinetic temperature is off; the structure is then another, even within its noise.
 static bool contradicts_temperature(const struct verification *verification, double temperature,
                                     const struct units *units, char reason[INVERSE_REASON_SIZE]) {
@@ -303,8 +317,12 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
     }
     if (!targets_ask(fitted, TARGET_RDF) || verify_agreement_holds(&agreement[TARGET_RDF]))
         return contradicts_temperature(verification, temperature, units, reason);
-    report_structure(several ? "g(r) of all pair types" : "g(r)", &fitted->bins,
-                     &agreement[TARGET_RDF], verification, temperature, units, reason);
+    const struct verify_stretch *stretch = &agreement[TARGET_RDF].stretch;
+    if (stretch->core && stretch->misfit > stretch->probable)
+        report_core(&fitted->bins, &agreement[TARGET_RDF], units, reason);
+    else
+        report_structure(several ? "g(r) of all pair types" : "g(r)", &fitted->bins,
+                         &agreement[TARGET_RDF], verification, temperature, units, reason);
     return true;
 }
 

@@ -246,6 +246,92 @@ static void test_agreement_is_of_the_least_probable_section(void **state) {
     assert_true(verify_agreement_holds(&agreement[TARGET_PRESSURE]));
 }
 
+/// Bins of width 0.05, of which the first 20 are a core: without pairs by a target in whose bins
+/// one count is g = 0.01 at r = 1, as in those of the verification.
+enum { CORE = 20 };
+static const double one_count = 0.01;
+
+static double count_of(int bin) {
+    return one_count / pow(0.05 * (bin + 0.5), 2);
+}
+
+static void make_core(struct case_of *of) {
+    make(of, 0, 0, 50);
+    of->targets.bins = (struct rdf_bins){0, 0.05, BINS};
+    for (int k = 0; k < BINS; k++) {
+        of->wanted[k] = of->value[k] = k >= CORE;
+        of->target_error[k] = of->error[k] = k >= CORE ? sqrt(count_of(k)) : 0;
+    }
+    of->sections.section[0].first = of->sections.section[0].core = CORE;
+    of->sections.section[0].count = BINS - CORE;
+    of->sections.section[0].threshold = 1e-3;
+    of->sections.section[0].known.freedom = 1e6;
+}
+
+static void set_counts(double *value, double *error, int bin, int counts) {
+    value[bin] = counts * count_of(bin);
+    error[bin] = sqrt(counts) * count_of(bin);
+}
+
+/// Pairs that a fit lets into a core, which no equation of it sees: a few are chance, and fewer
+/// than the target has no fault.
+static void test_agreement_sees_pairs_in_a_core(void **state) {
+    struct case_of of;
+    struct verify_agreement agreement[TARGETS];
+    (void)state;
+    make_core(&of);
+    assert_true(holds(&of, 0));
+    set_counts(of.value, of.error, 14, 3);
+    assert_true(holds(&of, 0));
+    set_counts(of.value, of.error, 14, 60);
+    assert_false(holds(&of, 0));
+    mf_verify_agree(&of.targets, &of.sections, &of.observed, 0, agreement);
+    assert_true(agreement[TARGET_RDF].stretch.core);
+    assert_int_equal(agreement[TARGET_RDF].stretch.first, 14);
+    assert_int_equal(agreement[TARGET_RDF].stretch.count, CORE - 14);
+    // As few in each of many bins are one gap.
+    set_counts(of.value, of.error, 14, 0);
+    for (int k = 0; k < CORE; k++)
+        set_counts(of.value, of.error, k, 3);
+    assert_false(holds(&of, 0));
+    for (int k = 0; k < CORE; k++) {
+        set_counts(of.wanted, of.target_error, k, 3);
+        set_counts(of.value, of.error, k, 0);
+    }
+    assert_true(holds(&of, 0));
+}
+
+static int poisson_of(double mean, uint32_t trial, uint32_t bin) {
+    double product = 1;
+    int counts = -1;
+    for (uint32_t n = 0; product > exp(-mean) || counts < 0; n++, counts++) {
+        const struct rng_block block = mf_rng_philox(17, RNG_INITIAL, trial, bin, n);
+        product *= mf_rng_uniform(block.word[0], block.word[1]);
+    }
+    return counts;
+}
+
+/// Target and verification of one law, which has few pairs in the core. Their errors are of counts,
+/// so that a thousandth is the right order.
+static void test_agreement_of_a_core_is_seldom_wrong(void **state) {
+    enum { TRIALS = 4000 };
+    struct case_of of;
+    (void)state;
+    for (int of_bin = 0; of_bin < 3; of_bin++) {
+        static const double mean[] = {0.05, 0.3, 2};
+        int wrong = 0;
+        for (uint32_t trial = 0; trial < TRIALS; trial++) {
+            make_core(&of);
+            for (uint32_t k = 10; k < CORE; k++) {
+                set_counts(of.wanted, of.target_error, (int)k, poisson_of(mean[of_bin], trial, k));
+                set_counts(of.value, of.error, (int)k, poisson_of(mean[of_bin], trial, 100 + k));
+            }
+            wrong += !holds(&of, 0);
+        }
+        assert_true(wrong <= 8);
+    }
+}
+
 enum { LAGS = 64, ROWS = 33, COLUMNS = 20, CELLS = ROWS * COLUMNS };
 
 /// A VACF and escape times whose values and errors are given.
@@ -432,6 +518,8 @@ int main(void) {
         cmocka_unit_test(test_agreement_knows_the_noise_of_the_fit_where_a_value_is_not_known),
         cmocka_unit_test(test_agreement_is_bounded_where_the_inverse_of_f_fails),
         cmocka_unit_test(test_agreement_is_of_the_least_probable_section),
+        cmocka_unit_test(test_agreement_sees_pairs_in_a_core),
+        cmocka_unit_test(test_agreement_of_a_core_is_seldom_wrong),
         cmocka_unit_test(test_agreement_sees_a_misfit_at_short_times),
         cmocka_unit_test(test_agreement_sees_a_misfit_of_some_r_0),
         cmocka_unit_test(test_agreement_of_all_parts_is_wrong_in_one_of_a_thousand),
