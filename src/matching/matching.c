@@ -52,7 +52,7 @@ struct state {
     struct parametrisation_curves curves; ///< of the best, with errors by the linear model
     struct progress {
         uint32_t iteration;
-        int stage;            ///< of `check`
+        int stage;            ///< enum check_stage
         uint64_t checked;     ///< evaluations when the best candidate was last measured
         uint32_t last_better; ///< iteration in which the error fell last
         uint32_t met;         ///< checks after which it agreed with the targets but for their noise
@@ -62,6 +62,9 @@ struct state {
         double variance;      ///< of that mean
     } progress;
 };
+
+/// Of `check`.
+enum check_stage { NOTHING, INCUMBENT, SURROGATE, LONGER };
 
 /// What becomes of the best of a linear model.
 enum { UNUSED, TRIED, JOINS };
@@ -198,7 +201,8 @@ static bool wants_check(const struct state *state, bool last) {
     if (state->progress.known && memcmp(state->best_candidate, state->best, bytes) == 0)
         return false;
     const uint64_t since = state->population.totals.evaluations - state->progress.checked;
-    const int64_t each = state->progress.length > 5 ? 2 * state->progress.length : 10;
+    const int64_t length = state->progress.length / state->population.totals.length;
+    const int64_t each = length > 5 ? 2 * length : 10;
     return last || !state->progress.known || since >= (uint64_t)(each * state->parameters.checks);
 }
 
@@ -332,7 +336,6 @@ static void describe(struct state *state, struct inverse_step *step, bool finish
 /// Measure what the optimiser, and then the linear model, thinks best. Each stage is done once,
 /// also if an interruption comes between them.
 static enum status check(struct state *state, bool last) {
-    enum { NOTHING, INCUMBENT, SURROGATE, LONGER };
     struct progress *progress = &state->progress;
     if (!state->optimiser->best_candidate(state->optimiser_state, state->best_candidate))
         return STATUS_OK;
@@ -356,6 +359,20 @@ static enum status check(struct state *state, bool last) {
         progress->checked = state->population.totals.evaluations;
     }
     return STATUS_OK;
+}
+
+/// Whether an optimiser that has settled goes on, as noise of its own simulations is what hides
+/// what would be better: they become longer.
+static bool goes_on(struct state *state) {
+    const struct optimiser *optimiser = state->optimiser;
+    void *const memory = state->optimiser_state;
+    if (optimiser->go_on == NULL || !optimiser->settled(memory) || !state->progress.known ||
+        !hides(state) || !optimiser->go_on(memory))
+        return false;
+    state->population.totals.length *= 2;
+    state->progress.length *= 2;
+    state->progress.stage = LONGER;
+    return true;
 }
 
 static size_t spans(void *memory, struct memory_span *span) {
@@ -382,8 +399,9 @@ static enum status iterate(void *memory, struct inverse_step *step,
         TRY(take_round(state, &round, listener));
         TRY(state->optimiser->ask(state->optimiser_state, &round));
     }
-    const bool ends = round.count == 0;
-    TRY(check(state, ends));
+    const bool ended = round.count == 0;
+    TRY(check(state, ended));
+    const bool ends = ended && !goes_on(state);
     if (!ends && rests(state))
         TRY(check(state, true));
     describe(state, step, ends || rests(state));

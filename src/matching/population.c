@@ -79,6 +79,7 @@ enum status mf_population_init(struct population *population,
     mf_population_next_round(population);
     mf_population_reset_survey(population);
     population->totals.rounds = 0;
+    population->totals.length = 1;
     return STATUS_OK;
 }
 
@@ -114,6 +115,13 @@ void mf_population_next_round(struct population *population) {
 
 void mf_population_reset_survey(struct population *population) {
     population->survey = (struct population_survey){.min = INFINITY};
+}
+
+struct evaluate_parameters mf_population_evaluate(const struct population *population) {
+    struct evaluate_parameters evaluate = population->parameters.evaluate;
+    evaluate.plan.samples *= population->totals.length;
+    evaluate.precision /= sqrt((double)population->totals.length);
+    return evaluate;
 }
 
 void mf_population_split(const struct population *population, double *position, double *column[3]) {
@@ -231,6 +239,7 @@ struct work {
     struct population *population;
     const struct optimiser_round *round;
     const struct inverse_listener *listener;
+    struct evaluate_parameters parameters;
     double discard_above;
     int threads; ///< inside a simulation
     size_t count, index[POPULATION_MAX];
@@ -245,7 +254,7 @@ static enum status measure_one(void *context, size_t task, void *memory) {
     TRY(mf_measurement_values_init(&observed,
                                    &population->parametrisation->unknowns.problem->targets));
     const struct population_task one = {
-        .parameters = &population->parameters.evaluate,
+        .parameters = &work->parameters,
         .seed = seed_of(population, index),
         .discard_above = work->discard_above,
         .threads = work->threads,
@@ -342,7 +351,12 @@ enum status mf_population_measure(struct population *population,
                                   const struct optimiser_round *round, double discard_above,
                                   const struct inverse_listener *listener) {
     const struct inverse_problem *problem = population->parametrisation->unknowns.problem;
-    struct work work = {population, round, listener, discard_above, 1, 0, {0}};
+    struct work work = {.population = population,
+                        .round = round,
+                        .listener = listener,
+                        .parameters = mf_population_evaluate(population),
+                        .discard_above = discard_above,
+                        .threads = 1};
     if (round->count > POPULATION_MAX)
         return mf_status_fail(STATUS_BAD_INPUT, "a round of %zu candidates: at most %d",
                               round->count, POPULATION_MAX);

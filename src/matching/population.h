@@ -60,6 +60,7 @@ struct population {
     struct population_totals {
         uint64_t rounds, evaluations, steps;
         uint64_t remeasured; ///< candidates
+        int64_t length;      ///< of simulations, in units of what the run file says
         bool warm;           ///< whether there is a position to begin with
         double best_error;   ///< of this round
         uint64_t best_index;
@@ -89,6 +90,10 @@ void mf_population_next_round(struct population *population);
 /// (population_check.c)
 enum status mf_population_settle(struct population *population,
                                  const struct optimiser_round *round) MUST_USE;
+
+/// How candidates are measured now: for `length` times as long as the run file says, but for their
+/// equilibration, and as much more precisely.
+struct evaluate_parameters mf_population_evaluate(const struct population *population);
 
 /// Columns of positions, one a dimension.
 void mf_population_split(const struct population *population, double *position, double *column[3]);

@@ -336,6 +336,11 @@ void mf_genetic_remeasure_elite(struct genetic *genetic, double error) {
     genetic->elite_error += (error - genetic->elite_error) / genetic->elite_measured;
 }
 
+void mf_genetic_forget(struct genetic *genetic) {
+    genetic->elite_measured = 0;
+    genetic->resumed = genetic->generation;
+}
+
 bool mf_genetic_offer(struct genetic *genetic, const double *genes, double error, double measured) {
     if (error >= genetic->elite_error)
         return false;
@@ -423,7 +428,7 @@ void mf_genetic_next_generation(struct genetic *genetic, const double *errors) {
     }
     for (size_t k = 0; k < total_genes(genetic); k++)
         genetic->population[k] = within_range(genetic->offspring[k], p);
-    if (genetic->elite_measured > 0)
+    if (genetic_has_elite(genetic))
         place_elite(genetic);
     genetic->measured += (uint64_t)genetic->rows;
     genetic->rows = p->population;

@@ -61,7 +61,7 @@ struct genetic {
     double *ranked;        ///< shape [room]: scratch
     double *elite;         ///< shape [genes]
     double elite_error;    ///< mean of its measurements; GENETIC_FAILED if there is no elite yet
-    double elite_measured; ///< how many they were
+    double elite_measured; ///< how many they were; 0: they are forgotten
     size_t blocks;         ///< of genes that walk together
     size_t *block;         ///< shape [blocks]: genes of each
     double *spread; ///< shape [blocks]: of the better half's genes about their means, rms, as
@@ -69,7 +69,12 @@ struct genetic {
     double median;  ///< error of the last generation; HUGE_VAL before. Of the winners of the usual
                     ///< tournaments (eight, 0.75) one in 43 is beyond it
     uint32_t elite_since; ///< generation of the elite
+    uint32_t resumed;     ///< generation from which patience counts, if the elite is older
 };
+
+static inline bool genetic_has_elite(const struct genetic *genetic) {
+    return genetic->elite_error < GENETIC_FAILED;
+}
 
 /// First generation: genes uniform in their range, or the start and random walks from it; blocks of
 /// one gene, which are no curve, are uniform in any case. Of `space` it takes variables, range,
@@ -84,6 +89,10 @@ const double *mf_genetic_individual(const struct genetic *genetic, int64_t index
 
 /// Add a fresh measurement of the elite to its mean.
 void mf_genetic_remeasure_elite(struct genetic *genetic, double error);
+
+/// Measurements have less noise from now on: the next one of the elite is its mean, and patience
+/// begins again.
+void mf_genetic_forget(struct genetic *genetic);
 
 /// Make `genes` the elite if `error`, the mean of `measured` fresh measurements, is below the
 /// elite's. Returns whether it did.

@@ -57,8 +57,10 @@ done:
 /// Whether the elite has stood its ground for long.
 static bool has_settled(const struct genetic *genetic) {
     const int64_t patience = genetic->parameters.patience;
-    return patience > 0 && genetic->elite_measured > 0 &&
-           genetic->generation >= genetic->elite_since + (uint64_t)patience;
+    const uint32_t since =
+        genetic->elite_since > genetic->resumed ? genetic->elite_since : genetic->resumed;
+    return patience > 0 && genetic_has_elite(genetic) &&
+           genetic->generation >= since + (uint64_t)patience;
 }
 
 /// Whether all generations are measured, and perhaps a last challenger is left.
@@ -96,7 +98,7 @@ static void assess_challenger(struct genetic *genetic, const double *fresh) {
 }
 
 static bool is_elite(const struct genetic *genetic, int64_t row) {
-    return genetic->elite_measured > 0 &&
+    return genetic_has_elite(genetic) &&
            memcmp(mf_genetic_individual(genetic, row), genetic->elite,
                   (size_t)genetic->parameters.genes * sizeof(double)) == 0;
 }
@@ -132,7 +134,7 @@ static void add_challenger(struct state *state, uint64_t number) {
 static void report_generation(struct state *state) {
     struct genetic *genetic = &state->genetic;
     const int64_t population = genetic->parameters.population;
-    if (genetic->elite_measured > 0)
+    if (genetic_has_elite(genetic))
         mf_genetic_remeasure_elite(genetic, state->errors[0]);
     if (has_challenger(genetic))
         assess_challenger(genetic, state->errors + population);
@@ -175,7 +177,7 @@ static enum status tell(void *memory, const double *errors, const double *varian
 
 static bool best_candidate(const void *memory, double *genes) {
     const struct genetic *genetic = &((const struct state *)memory)->genetic;
-    const bool has_elite = genetic->elite_measured > 0;
+    const bool has_elite = genetic_has_elite(genetic);
     if (!has_elite && !has_challenger(genetic))
         return false;
     memcpy(genes, has_elite ? genetic->elite : last_challenger(genetic),
@@ -189,6 +191,14 @@ static double spread(const void *memory) {
 
 static bool settled(const void *memory) {
     return has_settled(&((const struct state *)memory)->genetic);
+}
+
+static bool go_on(void *memory) {
+    struct genetic *genetic = &((struct state *)memory)->genetic;
+    if (genetic->generation >= (uint32_t)genetic->parameters.generations)
+        return false;
+    mf_genetic_forget(genetic);
+    return true;
 }
 
 /// In the last place of the next generation.
@@ -233,6 +243,7 @@ static size_t spans(void *memory, struct memory_span *span) {
         (struct memory_span){genetic->parent, (size_t)(p->population + GENETIC_REMEASUREMENTS) * 2 *
                                                   sizeof *genetic->parent};
     span[n++] = (struct memory_span){&genetic->elite_since, sizeof genetic->elite_since};
+    span[n++] = (struct memory_span){&genetic->resumed, sizeof genetic->resumed};
     return n;
 }
 
@@ -243,5 +254,6 @@ const struct optimiser mf_genetic_optimiser = {
     .budget = "generations",
     OPTIMISER_RECORD,
     .suggest = suggest,
+    .go_on = go_on,
     .parents = parents,
 };

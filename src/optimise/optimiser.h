@@ -69,6 +69,9 @@ struct optimiser {
     /// Whether it ended since it could do no better, before its budget was used up. NULL: it never
     /// does.
     bool (*settled)(const void *state);
+    /// Go on after it has settled, with measurements that have less noise from now on: those before
+    /// are forgotten. NULL: it cannot. Returns whether its budget allows it.
+    bool (*go_on)(void *state);
     /// Whether it ended by itself without having settled, or NULL: it does not.
     bool (*gave_up)(const void *state);
     /// Whose child row `row` of the round asked for is, as numbers of candidates in the order in

@@ -11,6 +11,7 @@
 #include "shared/twins.h"
 
 #include <stdio.h>
+#include <math.h>
 #include <stdlib.h>
 
 #define PLAN "\"equilibration\": 300, \"samples\": 200, \"every\": 10"
@@ -203,6 +204,26 @@ static void test_populations_have_not_agreed_by_the_noise_of_their_own_simulatio
     }
 }
 
+/// Nor has an elite settled that stands its ground by luck, with two and a half times the noise of
+/// the target, 0.0068.
+static void test_populations_have_not_settled_by_the_noise_of_their_own_simulations(void **state) {
+    static struct run_program_result result;
+    for (int seed = 1; seed <= (length_is_long() ? 8 : 1); seed++) {
+        fit_a(*state,
+              "\"name\": \"genetic\", \"generations\": 40, \"population\": 8, \"patience\": 2, "
+              "\"surrogate\": \"no\"",
+              29, seed, &result);
+        assert_summary("converged", NULL);
+        char *history = temporary_folder_read("out/history.tsv"), *last = history;
+        for (char *line = history; line[0]; line = strchr(line, '\n') + 1)
+            last = line;
+        double noise;
+        assert_int_equal(sscanf(last, "%*s %*s %*s %*s %lf", &noise), 1);
+        assert_true(noise < M_SQRT2 * 0.007);
+        free(history);
+    }
+}
+
 /// The file again with a time step so short that the particles have hardly left their lattice.
 static void make_slow(struct temporary_folder *folder, const char *name) {
     char *text = temporary_folder_read(name);
@@ -296,6 +317,8 @@ int main(void) {
         TEST_WITHOUT_FIGURES(test_populations_have_finished_when_their_best_agrees),
         TEST_WITHOUT_FIGURES(
             test_populations_have_not_agreed_by_the_noise_of_their_own_simulations),
+        TEST_WITHOUT_FIGURES(
+            test_populations_have_not_settled_by_the_noise_of_their_own_simulations),
         TEST_WITHOUT_FIGURES(test_cmaes_has_not_converged_when_its_verification_is_worse),
         TEST_WITHOUT_FIGURES(
             test_unstable_verification_tells_its_time_step_in_the_units_of_the_file),

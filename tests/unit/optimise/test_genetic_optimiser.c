@@ -173,19 +173,21 @@ static void test_first_walks_are_about_the_start(void **state) {
     mf_genetic_clear(&genetic);
 }
 
+static struct run begin_patiently(int64_t generations, int64_t patience) {
+    struct run run = begin(generations);
+    mf_genetic_optimiser.destroy(run.state);
+    const struct optimiser_space space = {.variables = GENES, .maximum = 1, .seed = 3};
+    run.parameters.patience = patience;
+    assert_ok(mf_genetic_optimiser.create(run.state, &space, &run.parameters));
+    ask(&run);
+    return run;
+}
+
 /// Once an elite has stood its ground for the generations of its patience; a better one begins
 /// again.
 static void test_it_settles_when_its_patience_is_over(void **state) {
     (void)state;
-    struct run run = {.state = mf_memory_zeroed(1, mf_genetic_optimiser.state_size)};
-    const struct optimiser_space space = {.variables = GENES, .maximum = 1, .seed = 3};
-    mf_fields_set_defaults(mf_genetic_fields, &run.parameters);
-    run.parameters.population = POPULATION;
-    run.parameters.generations = 100;
-    run.parameters.patience = 3;
-    run.parameters.mutation = 1;
-    assert_ok(mf_genetic_optimiser.create(run.state, &space, &run.parameters));
-    ask(&run);
+    struct run run = begin_patiently(100, 3);
     tell(&run, (double[]){5, 4, 3, 2, 1, 6});
     tell(&run, (double[]){9, 9, 9, 9, 9, 9, 1, 1}); // the elite of generation 1
     tell(&run, (double[]){1, 9, 9, 9, 9, 9});
@@ -204,6 +206,32 @@ static void test_it_settles_when_its_patience_is_over(void **state) {
     }
     assert_true(mf_genetic_optimiser.settled(run.state));
     assert_int_equal(run.round.count, 0);
+    end(&run);
+}
+
+/// The elite keeps its place, and not the error of its noisy measurements; patience begins again.
+static void test_it_goes_on_with_measurements_of_less_noise(void **state) {
+    (void)state;
+    double elite[GENES], best[GENES];
+    struct run run = begin_patiently(5, 2);
+    tell(&run, (double[]){5, 4, 3, 2, 1, 6});
+    tell(&run, (double[]){9, 9, 9, 9, 9, 9, 1, 1});
+    copy_row(&run, 0, elite);
+    tell(&run, (double[]){1, 9, 9, 9, 9, 9});
+    tell(&run, (double[]){1, 9, 9, 9, 9, 9});
+    assert_true(mf_genetic_optimiser.settled(run.state));
+    assert_true(mf_genetic_optimiser.go_on(run.state));
+    ask(&run);
+    assert_false(mf_genetic_optimiser.settled(run.state));
+    assert_int_equal(run.round.count, POPULATION);
+    assert_genes(row(&run, 0), elite);
+    // 2 now, not 1: what measures 1.5 is better.
+    tell(&run, (double[]){2, 1.5, 9, 9, 9, 9});
+    assert_int_equal(run.round.count, ROWS);
+    tell(&run, (double[]){2, 9, 9, 9, 9, 9, 1.5, 1.5});
+    assert_true(mf_genetic_optimiser.best_candidate(run.state, best));
+    assert_memory_not_equal(best, elite, sizeof best);
+    assert_false(mf_genetic_optimiser.go_on(run.state)); // five generations are used up
     end(&run);
 }
 
@@ -227,6 +255,7 @@ int main(void) {
         cmocka_unit_test(test_discard_above_is_the_median_of_the_last_generation),
         cmocka_unit_test(test_first_walks_are_about_the_start),
         cmocka_unit_test(test_it_settles_when_its_patience_is_over),
+        cmocka_unit_test(test_it_goes_on_with_measurements_of_less_noise),
         cmocka_unit_test(test_what_is_suggested_joins_the_next_generation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
