@@ -88,7 +88,8 @@ void mf_target_sanity_report_scales(const struct target_files *files, const stru
                                     const struct target_sanity_listener *listener);
 
 /// Warn of a density or a temperature that is not that of a target.json of `measure` beside the
-/// table of g(r). Tested: cli/test_target_sanity.
+/// table of g(r), and say again what its summary.json warns of, as of a trajectory that was not
+/// in equilibrium. Tested: cli/test_target_sanity.
 void mf_target_sanity_report_measured(const struct target_files *files, const struct scene *scene,
                                       const struct target_sanity_listener *listener);
 

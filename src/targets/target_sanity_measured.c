@@ -55,16 +55,27 @@ static bool differ(double one, double other) {
     return fabs(one - other) > rounded * other;
 }
 
-void mf_target_sanity_report_measured(const struct target_files *files, const struct scene *scene,
-                                      const struct target_sanity_listener *listener) {
-    const struct target_pairs *const pairs = target_files_rdf(files);
-    char path[OUTPUT_PATH_SIZE], density[64] = "", temperature[64] = "";
-    struct state measured;
-    if (pairs->pairs == 0 || scene->setup.box.dimensions != 3)
+/// What a summary.json of `measure` warns of: "" if of nothing, or if there is none.
+enum { WARNING_SIZE = 512 };
+static void read_warning(const char *file, char text[WARNING_SIZE]) {
+    struct json_document *document;
+    text[0] = '\0';
+    if (mf_json_open(&document, file) != STATUS_OK)
         return;
-    const char *const file = pairs->member[0].parameters.file, *const slash = strrchr(file, '/');
-    snprintf(path, sizeof path, "%.*starget.json", slash ? (int)(slash + 1 - file) : 0, file);
-    if (!read_measured(path, &measured))
+    struct json_object root = mf_json_root(document);
+    const char *const method = mf_json_choice(&root, "method", NULL, "");
+    const char *const warning = mf_json_choice(&root, "warning", NULL, "");
+    if (method && warning && strcmp(method, "measure") == 0)
+        snprintf(text, WARNING_SIZE, "%s", warning);
+    if (mf_json_close(document, STATUS_OK) != STATUS_OK)
+        text[0] = '\0';
+}
+
+static void report_state(const char *path, const struct scene *scene,
+                         const struct target_sanity_listener *listener) {
+    char density[64] = "", temperature[64] = "";
+    struct state measured;
+    if (scene->setup.box.dimensions != 3 || !read_measured(path, &measured))
         return;
     const struct state own = state_of(scene);
     if (differ(own.density, measured.density))
@@ -78,4 +89,22 @@ void mf_target_sanity_report_measured(const struct target_files *files, const st
                               "was measured at %s%s%s: is the scene's in other units?",
                               path, density, density[0] && temperature[0] ? ", and at " : "",
                               temperature);
+}
+
+void mf_target_sanity_report_measured(const struct target_files *files, const struct scene *scene,
+                                      const struct target_sanity_listener *listener) {
+    const struct target_pairs *const pairs = target_files_rdf(files);
+    char path[OUTPUT_PATH_SIZE], warning[WARNING_SIZE];
+    if (pairs->pairs == 0)
+        return;
+    const char *const file = pairs->member[0].parameters.file, *const slash = strrchr(file, '/');
+    const int folder = slash ? (int)(slash + 1 - file) : 0;
+    snprintf(path, sizeof path, "%.*starget.json", folder, file);
+    report_state(path, scene, listener);
+    snprintf(path, sizeof path, "%.*ssummary.json", folder, file);
+    read_warning(path, warning);
+    if (warning[0])
+        mf_target_sanity_warn(
+            listener, "mesofit: warning: target: %s, beside the table of g(r), says that %s", path,
+            warning);
 }

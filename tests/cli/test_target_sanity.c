@@ -292,6 +292,25 @@ static void test_fit_warns_of_a_state_that_is_not_the_measured_one(void **state)
     assert_int_equal(unlink("target.json"), 0);
 }
 
+/// What `measure` warned of, and `fit` would forget.
+static void test_fit_says_again_what_the_measurement_warned_of(void **state) {
+    static const char *const words = "target: summary.json, beside the table of g(r), says that "
+                                     "the trajectory is not in equilibrium";
+    static struct run_program_result result;
+    small_inputs_write(*state, "run.json", water, NULL, NULL);
+    for (int k = 0; k < 2; k++) {
+        small_inputs_write(*state, "summary.json",
+                           k ? "{\"method\": \"measure\", \"warning\": \"the trajectory is not in "
+                               "equilibrium\", \"frames\": 80}\n"
+                             : "{\"method\": \"measure\", \"frames\": 80}\n",
+                           NULL, NULL);
+        RUN_PROGRAM(&result, "fit", "run.json", "--explain");
+        run_program_assert_code(&result, 0);
+        assert_int_equal(strstr(result.out, words) != NULL, k);
+    }
+    assert_int_equal(unlink("summary.json"), 0);
+}
+
 /// Gaussian-core particles have no packing that is too dense, but ten times the density asks for
 /// less than no fluctuations; hard spheres a thousandth of their close packing are a gas.
 static void test_fit_looks_at_densities_of_fluids_without_layers(void **state) {
@@ -592,6 +611,7 @@ int main(void) {
         TEST(test_fit_warns_of_g_that_does_not_end_at_1),
         TEST(test_fit_warns_of_a_cutoff_beyond_the_table),
         TEST(test_fit_warns_of_a_state_that_is_not_the_measured_one),
+        TEST(test_fit_says_again_what_the_measurement_warned_of),
         TEST(test_fit_looks_at_densities_of_fluids_without_layers),
         TEST(test_fit_names_the_pairs_of_a_mixture_that_cannot_be),
         TEST(test_fit_names_demixing_where_the_integrals_say_so),
