@@ -25,7 +25,7 @@ struct verify_section {
     int kind;
     size_t first, count; ///< of the target's values: those that tell of the potential
     size_t core;      ///< values before them that have no pairs by the target, but for chance …
-    double threshold; ///< … and g that counts as none
+    double threshold; ///< … and g that is as good as none
     struct statistics_independence known;
 };
 

@@ -28,6 +28,7 @@ static struct verify_section *add(struct verify_sections *sections,
 static enum status add_pairs(const struct potential_grid *grid, double threshold,
                              const struct measurement *replicas, size_t count,
                              struct verify_sections *sections) {
+    static const double rare = 0.01; // a core is drawn, not fitted, and so few pairs change nothing
     OWNED struct rdf *rdf = NULL;
     size_t known = 0;
     TRY_ARRAY(rdf, count);
@@ -43,7 +44,7 @@ static enum status add_pairs(const struct potential_grid *grid, double threshold
         if (section == NULL)
             continue;
         section->core = section->first - pair * grid->bins;
-        section->threshold = threshold;
+        section->threshold = fmax(rare, threshold);
         TRY(mf_rdf_independence(rdf, count, section->first, section->count, &section->known));
     }
     return STATUS_OK;

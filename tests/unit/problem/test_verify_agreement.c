@@ -264,7 +264,7 @@ static void make_core(struct case_of *of) {
     }
     of->sections.section[0].first = of->sections.section[0].core = CORE;
     of->sections.section[0].count = BINS - CORE;
-    of->sections.section[0].threshold = 1e-3;
+    of->sections.section[0].threshold = 0.01;
     of->sections.section[0].known.freedom = 1e6;
 }
 
