@@ -2,15 +2,19 @@
 # Escape times of the result on those of the target, for some first separations r0, and the
 # difference over all of them.
 # Reads etd_cells.tsv: time, r0, target, target_error, result, result_error; a row a cell, all r0 of
-# a time together; nan where not known.
+# a time together; nan where not known. What few pairs tell, with errors of a tenth and more, is
+# left out of the curves and of the colours' range, if there is anything else.
 
 load system("printf %s \"$MESOFIT_PLOTS\"") . "/style.gp"
 
 # The number of r0, then the row (from 0) and r0 of those that are known of both, or else of all.
 found = system("awk -F '\t' '/^#/ { next } !begun { begun = 1; first = $1 } \
     $1 == first { r[bins++] = $2 } { row++ } \
-    $1 != first && $3 ~ /[0-9]/ && $5 ~ /[0-9]/ { seen[(row - 1) % bins] = 1; any = 1 } \
-    END { printf \"%d\", bins; for (k = 0; k < bins; k++) if (seen[k] || !any) \
+    $1 != first && $3 ~ /[0-9]/ && $5 ~ /[0-9]/ { k = (row - 1) % bins; some[k] = 1; \
+    if ($4 + 0 > 0.1 || $6 + 0 > 0.1) few[k] = 1 } \
+    END { for (k in some) if (!few[k]) { seen[k] = 1; any = 1 } \
+    for (k in some) if (!any) seen[k] = 1; for (k in seen) any = 1; \
+    printf \"%d\", bins; for (k = 0; k < bins; k++) if (seen[k] || !any) \
     printf \" %d %s\", k, r[k] }' etd_cells.tsv")
 bins = int(word(found, 1))
 known_bins = (words(found) - 1) / 2
@@ -25,7 +29,9 @@ r0_label = in_units("etd_cells.tsv", "r0[nm]", "{/:Italic r}_0 / nm", "{/:Italic
 stats "etd_cells.tsv" using (ps * $1) name "T" nooutput
 stats "etd_cells.tsv" using (nm * $2) name "R" nooutput
 stats "etd_cells.tsv" using (valid(3) && valid(5) ? abs($5 - $3) : 0) name "D" nooutput
-limit = D_max > 0 ? D_max : 1
+stats "etd_cells.tsv" using (valid(3) && valid(5) && !(valid(4) && $4 > 0.1) && \
+    !(valid(6) && $6 > 0.1) ? abs($5 - $3) : 0) name "K" nooutput
+limit = K_max > 0 ? K_max : D_max > 0 ? D_max : 1
 half = bins > 1 ? 0.5 * (R_max - R_min) / (bins - 1) : 0.5
 times = T_records / bins
 step = T_max / high(1, times - 1)
