@@ -134,22 +134,6 @@ static void place_points(struct potential_grid *grid, const struct rdf_bins *bin
             grid->r[grid->group[g].point + k] = mf_bonded_grid_place(&grid->group[g].own, k);
 }
 
-/// −Φ' into the core of a pair type by how g falls there from its first bin with pairs to the next,
-/// or to a twentieth: by the mean force, less what is known. Where the inner side of a well at
-/// contact is narrower than a bin, Φ falls towards the core, and pairs would be lost in it.
-static double find_rise(const struct potential_grid *grid, const struct inverse_problem *problem,
-                        size_t pair) {
-    static const double rare = 0.05;
-    const size_t first = grid->core[pair], bin = pair * grid->bins + first;
-    if (first == 0 || first == grid->bins || !(max_pairs(problem, bin) > 0))
-        return 0;
-    const double g = max_pairs(problem, bin), before = max_pairs(problem, bin - 1);
-    const double rise = problem->scene.temperature * log(g / fmax(before, rare * g)) -
-                        (mf_potential_grid_known(problem, pair, first - 1) -
-                         mf_potential_grid_known(problem, pair, first));
-    return fmax(0, rise) / problem->targets.bins.width;
-}
-
 enum status mf_potential_grid_init(struct potential_grid *grid,
                                    const struct inverse_problem *problem) {
     enum status status = STATUS_OK;
@@ -183,7 +167,7 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     place_points(grid, bins);
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         grid->stiffness[pair] = mf_potential_grid_stiffness(grid, problem, pair);
-        grid->rise[pair] = find_rise(grid, problem, pair);
+        grid->rise[pair] = mf_potential_grid_rise(grid, problem, pair);
     }
     CHECK(mf_potential_grid_find_shared(grid, problem));
     CHECK(mf_potential_grid_check_known(grid, problem));
@@ -249,9 +233,7 @@ void mf_potential_grid_complete_pairs(const struct potential_grid *grid, double 
             memset(block, 0, (grid->bins + 1) * sizeof *block);
             continue;
         }
-        double slope = find_slope(grid, pair, r, block);
-        if (slope > 0) // a well whose inner side no bin knows
-            slope = -grid->rise[pair];
+        const double slope = fmin(find_slope(grid, pair, r, block), -grid->rise[pair]);
         mf_core_fill(r + empty, block + empty, first - empty, slope, 0);
         mf_core_fill(r, block, empty, slope, grid->stiffness[pair]);
         block[grid->bins] = 0;

@@ -33,7 +33,7 @@ struct potential_grid {
                          ///< another state's
     double *r;           ///< shape [points] [λ], of angles [degrees]
     double *stiffness;   ///< shape [pairs]: of the core; 0 where what is known keeps pairs away
-    double *rise; ///< shape [pairs]: −Φ' into the core, where Φ falls towards it [k_B T_0/λ]
+    double *rise;        ///< shape [pairs]: −Φ' into the core, at least [k_B T_0/λ]
     struct inverse_law beside; ///< what acts with it in samples; none if an engine has it itself
     /// The straight line of f(ρ), which is a potential of pairs: f less s ρ, and Φ plus 2 s w(r),
     /// are the same energy. Shape [known], or NULL without both.
@@ -101,6 +101,13 @@ double mf_potential_grid_known(const struct inverse_problem *problem, size_t pai
 /// more than that by itself.
 double mf_potential_grid_stiffness(const struct potential_grid *grid,
                                    const struct inverse_problem *problem, size_t pair);
+
+/// −Φ' into the core of a pair type, at least: by how g falls there from its first known bin to the
+/// one before, the mean force, less what is known. The wall of a hard core, and the inner side of a
+/// well at contact, are narrower than a bin: pairs would come through what goes on as between the
+/// first two known bins [k_B T_0/λ].
+double mf_potential_grid_rise(const struct potential_grid *grid,
+                              const struct inverse_problem *problem, size_t pair);
 
 /// Refuse a known part that is so high where the target has many pairs. Fails: BAD_INPUT.
 enum status mf_potential_grid_check_known(const struct potential_grid *grid,

@@ -100,6 +100,42 @@ double mf_potential_grid_stiffness(const struct potential_grid *grid,
     return away ? 0 : problem->core_stiffness;
 }
 
+/// Upper bound of g in the bin before a known one: a thousandth of g there, what counts as none,
+/// two errors more than what was seen, or the three pairs of which chance shows none in one of
+/// twenty measurements.
+static double most_before(const struct inverse_problem *problem, size_t bin) {
+    static const double errors = 2, unseen = 3, rare = 1e-3;
+    const struct target *rdf = &problem->targets.target[TARGET_RDF];
+    const struct rdf_bins *bins = &problem->targets.bins;
+    const size_t k = bin % bins->count;
+    const double g = rdf->value[bin], none = fmax(problem->core_threshold, rare * g);
+    if (rdf->error == NULL)
+        return fmax(none, rdf->value[bin - 1]);
+    const double pair = rdf->error[bin] * rdf->error[bin] / g;
+    const double shells = mf_rdf_bins_centre(bins, k) / mf_rdf_bins_centre(bins, k - 1);
+    const double seen = rdf->value[bin - 1] + errors * rdf->error[bin - 1];
+    return fmax(none, fmax(unseen * pair * shells * shells, seen));
+}
+
+/// By how much Φ rises at least from a known bin to the one before, by the mean force of one state.
+static double own_rise(const struct inverse_problem *problem, size_t bin) {
+    const double g = problem->targets.target[TARGET_RDF].value[bin];
+    return g > 0 ? problem->scene.temperature * log(g / most_before(problem, bin)) : 0;
+}
+
+double mf_potential_grid_rise(const struct potential_grid *grid,
+                              const struct inverse_problem *problem, size_t pair) {
+    const size_t first = grid->core[pair], bin = pair * grid->bins + first;
+    if (first == 0 || first == grid->bins)
+        return 0;
+    double rise = own_rise(problem, bin);
+    for (size_t s = 0; s < problem->states; s++)
+        rise = fmax(rise, own_rise(problem->state[s], bin));
+    rise -= mf_potential_grid_known(problem, pair, first - 1) -
+            mf_potential_grid_known(problem, pair, first);
+    return fmax(0, rise) / problem->targets.bins.width;
+}
+
 enum status mf_potential_grid_check_known(const struct potential_grid *grid,
                                           const struct inverse_problem *problem) {
     const double most = too_high * problem->scene.temperature;

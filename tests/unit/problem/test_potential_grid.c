@@ -69,10 +69,10 @@ static void test_potential_grid_core_takes_in_single_pairs_when_errors_tell(void
     mf_potential_grid_clear(&grid);
     target[0] = 0;
     assert_ok(mf_potential_grid_init(&grid, &problem));
-    double phi[BINS + 1] = {[CORE] = 5, [CORE + 1] = 4};
+    double phi[BINS + 1] = {[CORE] = 5, [CORE + 1] = 3};
     mf_potential_grid_complete(&grid, phi);
-    assert_close(phi[CORE - 3], 8, rounding);
-    assert_close(phi[CORE - 5], 10 + 0.5 * 2000 * 0.2 * 0.2, 1e-9);
+    assert_close(phi[CORE - 3], 11, rounding);
+    assert_close(phi[CORE - 5], 15 + 0.5 * 2000 * 0.2 * 0.2, 1e-9);
     mf_potential_grid_clear(&grid);
     error[CORE - 1] = 0.02;
     target[CORE - 2] = 0.01;
@@ -197,9 +197,9 @@ static void test_potential_grid_starts_from_the_curve_when_there_is_one(void **s
 static void test_potential_grid_core_is_the_parabola_when_completed(void **state) {
     (void)state;
     double target[BINS], phi[BINS + 1];
-    // Falling and rising at the first known point: the core never attracts, and behind the inner
-    // side of a well, which no bin knows, g is a twentieth.
-    static const double slopes[] = {-30, 0, 25};
+    // Falling and rising at the first known point: the core never attracts, and as g is 0.37 there
+    // and below the threshold of 0.001 a bin before, it has a slope of 77 at least.
+    static const double slopes[] = {-130, -30, 25};
     make_target(target);
     const struct inverse_problem problem = make_problem(target);
     for (int s = 0; s < 3; s++) {
@@ -208,7 +208,7 @@ static void test_potential_grid_core_is_the_parabola_when_completed(void **state
         for (int k = CORE; k <= BINS; k++)
             phi[k] = 2 + slopes[s] * (grid.r[k] - grid.r[CORE]);
         mf_potential_grid_complete(&grid, phi);
-        const double push = slopes[s] > 0 ? 1.3 * log(20) / 0.1 : -slopes[s];
+        const double push = fmax(-slopes[s], 1.3 * log(target[CORE] / 1e-3) / 0.1);
         for (int k = 0; k < CORE; k++) {
             const double depth = grid.r[CORE] - grid.r[k];
             assert_close(phi[k], 2 + push * depth + 1000 * depth * depth, 1e-9);
@@ -219,7 +219,8 @@ static void test_potential_grid_core_is_the_parabola_when_completed(void **state
     }
 }
 
-/// Few pairs of a bin before the first known one tell how deep the inner side of a well is.
+/// At least as much as the most that there may be in the bin before the first known one: two errors
+/// more than was seen, or three pairs where none was, of which one makes 0.09 of g a bin farther.
 static void test_potential_grid_core_rises_as_g_falls(void **state) {
     (void)state;
     double target[BINS], error[BINS], phi[BINS + 1];
@@ -235,7 +236,15 @@ static void test_potential_grid_core_rises_as_g_falls(void **state) {
     for (int k = CORE; k <= BINS; k++)
         phi[k] = 3 * (grid.r[k] - grid.r[CORE]);
     mf_potential_grid_complete(&grid, phi);
-    assert_close(phi[CORE - 1], 1.3 * log(5), 1e-9);
+    assert_close(phi[CORE - 1], 1.3 * log(1 / 0.6), 1e-9);
+    mf_potential_grid_clear(&grid);
+    target[CORE - 1] = error[CORE - 1] = 0;
+    error[CORE] = 0.3 * target[CORE];
+    assert_ok(mf_potential_grid_init(&grid, &problem));
+    assert_int_equal(grid.core[0], CORE);
+    mf_potential_grid_complete(&grid, phi);
+    const double shells = pow(grid.r[CORE] / grid.r[CORE - 1], 2);
+    assert_close(phi[CORE - 1], 1.3 * log(1 / (3 * 0.09 * shells)) + 1000 * 0.01, 1e-9);
     mf_potential_grid_clear(&grid);
 }
 
