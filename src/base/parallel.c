@@ -37,6 +37,20 @@ void mf_parallel_for(size_t count, int threads,
                   part_begin(count, part + 1, threads));
 }
 
+// A team of one thread costs as much as others, a call of the system each time: what one thread
+// does has no team. (100 beads take 2.3 instead of 4.1 s, 512 2.3 instead of 2.7 s.)
+void mf_parallel_parts(int parts, int threads, void (*body)(void *context, int part),
+                       void *context) {
+    if (threads <= 1 || parts <= 1) {
+        for (int part = 0; part < parts; part++)
+            body(context, part);
+        return;
+    }
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
+    for (int part = 0; part < parts; part++)
+        body(context, part);
+}
+
 double mf_parallel_sum(size_t count, int threads,
                        double (*body)(const void *context, size_t begin, size_t end),
                        const void *context) {
@@ -44,6 +58,8 @@ double mf_parallel_sum(size_t count, int threads,
     const size_t wanted = (count + SMALLEST_BLOCK - 1) / SMALLEST_BLOCK;
     const int blocks = wanted < MAX_BLOCKS ? (int)wanted : MAX_BLOCKS;
     double sums[MAX_BLOCKS], total = 0;
+    if (blocks <= 1)
+        return blocks < 1 ? 0 : body(context, 0, count);
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
     for (int block = 0; block < blocks; block++)
         sums[block] =
@@ -84,7 +100,11 @@ static void go_round(struct ring *ring) {
 void mf_parallel_ring(int parts, int threads, void (*body)(void *context, int part),
                       void *context) {
     struct ring ring = {.parts = parts, .body = body, .context = context};
-#pragma omp parallel num_threads(threads) if (threads > 1 && parts > 1)
+    if (threads <= 1 || parts <= 1) {
+        go_round(&ring);
+        return;
+    }
+#pragma omp parallel num_threads(threads)
     go_round(&ring);
 }
 

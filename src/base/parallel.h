@@ -28,6 +28,10 @@ double mf_parallel_sum(size_t count, int threads,
                        double (*body)(const void *context, size_t begin, size_t end),
                        const void *context);
 
+/// Call `body` for parts 0 … parts − 1, each by whichever thread is free. Tested: test_parallel.
+void mf_parallel_parts(int parts, int threads, void (*body)(void *context, int part),
+                       void *context);
+
 enum { PARALLEL_MAX_RING = 64 };
 
 /// Call `body` for parts 0 … parts − 1 ≤ PARALLEL_MAX_RING that follow each other in a ring: one,

@@ -219,15 +219,22 @@ SIMD_CLONES static void weigh_pairs(struct friction_pair *pair, size_t count, co
     }
 }
 
+struct weighing {
+    struct friction *friction;
+    const double *mass;
+};
+
+static void weigh_part(void *context, int p) {
+    const struct weighing *of = context;
+    const struct friction *friction = of->friction;
+    weigh_pairs(friction->pair + friction->begin[p], friction->end[p] - friction->begin[p],
+                of->mass);
+}
+
 void mf_friction_weigh(struct friction *friction, const struct particles *particles) {
-    const double *mass = particles_masses(particles);
-    const int threads = particles->threads;
-    if (mass == NULL)
-        return;
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
-    for (int p = 0; p < friction->parts; p++)
-        weigh_pairs(friction->pair + friction->begin[p], friction->end[p] - friction->begin[p],
-                    mass);
+    struct weighing of = {friction, particles_masses(particles)};
+    if (of.mass)
+        mf_parallel_parts(friction->parts, particles->threads, weigh_part, &of);
 }
 
 void mf_friction_sweep(const struct friction *friction, struct particles *particles,

@@ -307,18 +307,28 @@ static enum status reserve_list(struct neighbours *neighbours) {
     return STATUS_OK;
 }
 
+struct building {
+    struct neighbours *neighbours;
+    const struct particles *particles;
+};
+
+static void build_one(void *context, int p) {
+    const struct building *of = context;
+    struct neighbours *neighbours = of->neighbours;
+    const bool last = p + 1 == neighbours->parts;
+    build_part(neighbours, of->particles, &neighbours->part[p],
+               last ? neighbours->list_capacity : neighbours->part[p + 1].begin);
+}
+
 /// Try to build all parts; *complete tells whether the list had room.
 static enum status build_parts(struct neighbours *neighbours, const struct particles *particles,
                                bool *complete) {
-    const int parts = neighbours->parts, threads = particles->threads;
+    struct building of = {neighbours, particles};
     TRY(reserve_list(neighbours));
     place_parts(neighbours);
-#pragma omp parallel for schedule(dynamic) num_threads(threads) if (threads > 1)
-    for (int p = 0; p < parts; p++)
-        build_part(neighbours, particles, &neighbours->part[p],
-                   p + 1 < parts ? neighbours->part[p + 1].begin : neighbours->list_capacity);
+    mf_parallel_parts(neighbours->parts, particles->threads, build_one, &of);
     *complete = true;
-    for (int p = 0; p < parts; p++)
+    for (int p = 0; p < neighbours->parts; p++)
         *complete &= neighbours->part[p].end != SIZE_MAX;
     return STATUS_OK;
 }

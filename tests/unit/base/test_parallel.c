@@ -70,6 +70,23 @@ static void test_parallel_ring_touches_all_places_in_one_order_for_any_threads(v
         }
 }
 
+static void count_part(void *context, int part) {
+    int *const calls = context;
+    calls[part]++;
+}
+
+static void test_parallel_parts_are_each_done_once(void **state) {
+    enum { PARTS = 9 };
+    (void)state;
+    for (int threads = 0; threads <= 5; threads++)
+        for (int parts = 0; parts <= PARTS; parts++) {
+            int calls[PARTS] = {0};
+            mf_parallel_parts(parts, threads, count_part, calls);
+            for (int part = 0; part < PARTS; part++)
+                assert_int_equal(calls[part], part < parts);
+        }
+}
+
 static void test_parallel_sum_has_the_same_bits_for_any_threads(void **state) {
     (void)state;
     for (size_t k = 0; k < COUNT; k++)
@@ -195,6 +212,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_parallel_for_visits_each_element_once_when_threads_are_many),
         cmocka_unit_test(test_parallel_ring_touches_all_places_in_one_order_for_any_threads),
+        cmocka_unit_test(test_parallel_parts_are_each_done_once),
         cmocka_unit_test(test_parallel_sum_has_the_same_bits_for_any_threads),
         cmocka_unit_test(test_parallel_try_takes_each_result_once_and_from_one_thread_at_a_time),
         cmocka_unit_test(test_parallel_try_returns_the_failure_of_the_lowest_task_with_its_message),
