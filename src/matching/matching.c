@@ -279,6 +279,19 @@ static bool hides(const struct state *state) {
            state->progress.noise * state->progress.noise > 2 * own * own;
 }
 
+/// Whether noise of a round's own simulations hides what would be better: it is larger than that of
+/// the targets, and more than half of what the best is off beyond noise.
+static bool hides_better(const struct state *state) {
+    enum { LONGEST = 64 };
+    const struct parameters *p = &state->parameters;
+    const int64_t length = state->population.totals.length;
+    const int64_t checked = p->checks * p->check_length * state->progress.length / length;
+    const double own = pow(mf_targets_own_noise(&state->problem->targets), 2);
+    const double noise = pow(state->progress.noise, 2), of_round = (noise - own) * (double)checked;
+    return state->progress.known && length < LONGEST && of_round > own &&
+           pow(state->progress.error, 2) - noise < 4 * of_round;
+}
+
 /// Measure the best again, as it has not been chosen by: the error by which it was is too small.
 static enum status measure_longer(struct state *state) {
     struct population_check check;
@@ -304,7 +317,8 @@ static void conclude(const struct state *state, struct inverse_step *step) {
         mf_population_report_failure(&state->population,
                                      "but what seemed best failed when it was measured again",
                                      step->reason);
-    else if (optimiser->settled && optimiser->settled(state->optimiser_state))
+    else if (optimiser->settled && optimiser->settled(state->optimiser_state) &&
+             !(optimiser->go_on && hides_better(state)))
         step->converged = true;
     else if (optimiser->gave_up && optimiser->gave_up(state->optimiser_state))
         mf_inverse_give_up(step);
@@ -361,13 +375,11 @@ static enum status check(struct state *state, bool last) {
     return STATUS_OK;
 }
 
-/// Whether an optimiser that has settled goes on, as noise of its own simulations is what hides
-/// what would be better: they become longer.
+/// Whether an optimiser that has settled goes on, with simulations that are longer.
 static bool goes_on(struct state *state) {
-    const struct optimiser *optimiser = state->optimiser;
+    const struct optimiser *const by = state->optimiser;
     void *const memory = state->optimiser_state;
-    if (optimiser->go_on == NULL || !optimiser->settled(memory) || !state->progress.known ||
-        !hides(state) || !optimiser->go_on(memory))
+    if (!by->go_on || !by->settled(memory) || !hides_better(state) || !by->go_on(memory))
         return false;
     state->population.totals.length *= 2;
     state->progress.length *= 2;

@@ -318,7 +318,8 @@ bool mf_fit_verification_contradicts(const struct verification *verification,
     if (!targets_ask(fitted, TARGET_RDF) || verify_agreement_holds(&agreement[TARGET_RDF]))
         return contradicts_temperature(verification, temperature, units, reason);
     const struct verify_stretch *stretch = &agreement[TARGET_RDF].stretch;
-    if (stretch->core && stretch->misfit > stretch->probable)
+    const bool sound = !verification->warning[0] && !verification->unequilibrated[0];
+    if (sound && stretch->core && stretch->misfit > stretch->probable)
         report_core(&fitted->bins, &agreement[TARGET_RDF], units, reason);
     else
         report_structure(several ? "g(r) of all pair types" : "g(r)", &fitted->bins,

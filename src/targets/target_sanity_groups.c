@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 void mf_target_sanity_warn(const struct target_sanity_listener *listener, const char *format, ...) {
-    char line[512];
+    char line[1024];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);

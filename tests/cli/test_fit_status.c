@@ -205,7 +205,7 @@ static void test_populations_have_not_agreed_by_the_noise_of_their_own_simulatio
 }
 
 /// Nor has an elite settled that stands its ground by luck, with two and a half times the noise of
-/// the target, 0.0068.
+/// the target, 0.0068: it goes on until noise is half of what the best is off.
 static void test_populations_have_not_settled_by_the_noise_of_their_own_simulations(void **state) {
     static struct run_program_result result;
     for (int seed = 1; seed <= (length_is_long() ? 8 : 1); seed++) {
@@ -219,7 +219,7 @@ static void test_populations_have_not_settled_by_the_noise_of_their_own_simulati
             last = line;
         double noise;
         assert_int_equal(sscanf(last, "%*s %*s %*s %*s %lf", &noise), 1);
-        assert_true(noise < M_SQRT2 * 0.007);
+        assert_true(noise < 0.0125);
         free(history);
     }
 }

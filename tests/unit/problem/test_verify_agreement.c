@@ -289,8 +289,20 @@ static void test_agreement_sees_pairs_in_a_core(void **state) {
     assert_true(agreement[TARGET_RDF].stretch.core);
     assert_int_equal(agreement[TARGET_RDF].stretch.first, 14);
     assert_int_equal(agreement[TARGET_RDF].stretch.count, CORE - 14);
-    // As few in each of many bins are one gap.
+    // A hard wall lets them into the last bin alone; a shorter target would have seen none.
     set_counts(of.value, of.error, 14, 0);
+    set_counts(of.value, of.error, CORE - 1, 60);
+    assert_false(holds(&of, 0));
+    for (int k = CORE; k < BINS; k++)
+        of.target_error[k] *= sqrt(50);
+    assert_true(holds(&of, 0));
+    for (int k = CORE; k < BINS; k++)
+        of.target_error[k] /= sqrt(50);
+    // What is as good as none, however well it is known.
+    of.value[CORE - 1] = 0.0099;
+    of.error[CORE - 1] = 1e-5;
+    assert_true(holds(&of, 0));
+    // As few in each of many bins are one gap.
     for (int k = 0; k < CORE; k++)
         set_counts(of.value, of.error, k, 3);
     assert_false(holds(&of, 0));
