@@ -194,8 +194,9 @@ static void test_closing_names_where_a_target_is_farthest_off(void **state) {
                     "most rdf for r from 0.5 to 1.25 by 8 times");
     closed->fit.scene.setup.composition =
         (struct composition){.types = 2, .name = {"A", "W"}, .count = {5, 5}};
-    assert_contains(say_farthest(closed, TARGET_RDF, all, (struct verify_stretch){10, 3, 64, 16}),
-                    "most rdf of A-W for r from 1 to 1.75 by 8 times");
+    assert_contains(
+        say_farthest(closed, TARGET_RDF, all, (struct verify_stretch){10, 3, 64, 16, false}),
+        "most rdf of A-W for r from 1 to 1.75 by 8 times");
     problem->compared.target[waves] = (struct target){.count = 4, .x = q};
     assert_contains(say_farthest(closed, waves, (struct verify_part){0, 1, 1, 2}, none),
                     "most structure_factor for q from 2 to 3 by 8 times");
