@@ -95,11 +95,11 @@ static void test_potential_grid_completes_each_core_and_each_end(void **state) {
     struct inverse_problem problem;
     begin(&grid, &problem, target);
     for (size_t n = 0; n < POINTS; n++)
-        phi[n] = (double)(n / (BINS + 1)) + 2 - (5 + (double)(n / (BINS + 1))) * grid.r[n];
+        phi[n] = (double)(n / (BINS + 1)) + 2 - 20 * (5 + (double)(n / (BINS + 1))) * grid.r[n];
     mf_potential_grid_complete(&grid, phi);
     for (size_t pair = 0; pair < PAIRS; pair++) {
         const size_t block = mf_potential_grid_block(&grid, pair), first = block + cores[pair];
-        const double push = 5 + (double)pair;
+        const double push = 20 * (5 + (double)pair);
         for (size_t n = block; n < first; n++) {
             const double depth = grid.r[first] - grid.r[n];
             assert_close(phi[n], phi[first] + push * depth + 1000 * depth * depth, 1e-9);
