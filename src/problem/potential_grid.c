@@ -167,8 +167,7 @@ enum status mf_potential_grid_init(struct potential_grid *grid,
     place_points(grid, bins);
     for (size_t pair = 0; pair < grid->pairs; pair++) {
         grid->stiffness[pair] = mf_potential_grid_stiffness(grid, problem, pair);
-        const bool drawn = grid->stiffness[pair] > 0; // not kept by what is known
-        grid->rise[pair] = drawn ? mf_potential_grid_rise(grid, problem, pair) : 0;
+        grid->rise[pair] = mf_potential_grid_rise(grid, problem, pair);
     }
     CHECK(mf_potential_grid_find_shared(grid, problem));
     CHECK(mf_potential_grid_check_known(grid, problem));

@@ -105,7 +105,7 @@ double mf_potential_grid_stiffness(const struct potential_grid *grid,
 /// −Φ' into the core of a pair type, at least: by how g falls there from its first known bin to the
 /// one before, the mean force, less what is known. The wall of a hard core, and the inner side of a
 /// well at contact, are narrower than a bin: pairs would come through what goes on as between the
-/// first two known bins [k_B T_0/λ].
+/// first two known bins; 0 where the known part keeps pairs away [k_B T_0/λ].
 double mf_potential_grid_rise(const struct potential_grid *grid,
                               const struct inverse_problem *problem, size_t pair);
 

@@ -92,12 +92,18 @@ static bool keeps_away(const struct potential_grid *grid, const struct inverse_p
     return rises;
 }
 
-double mf_potential_grid_stiffness(const struct potential_grid *grid,
-                                   const struct inverse_problem *problem, size_t pair) {
+/// The same in all states.
+static bool all_keep_away(const struct potential_grid *grid, const struct inverse_problem *problem,
+                          size_t pair) {
     bool away = keeps_away(grid, problem, pair);
     for (size_t s = 0; s < problem->states; s++)
         away = away && keeps_away(grid, problem->state[s], pair);
-    return away ? 0 : problem->core_stiffness;
+    return away;
+}
+
+double mf_potential_grid_stiffness(const struct potential_grid *grid,
+                                   const struct inverse_problem *problem, size_t pair) {
+    return all_keep_away(grid, problem, pair) ? 0 : problem->core_stiffness;
 }
 
 /// Upper bound of g in the bin before a known one: a thousandth of g there, what counts as none,
@@ -126,7 +132,7 @@ static double own_rise(const struct inverse_problem *problem, size_t bin) {
 double mf_potential_grid_rise(const struct potential_grid *grid,
                               const struct inverse_problem *problem, size_t pair) {
     const size_t first = grid->core[pair], bin = pair * grid->bins + first;
-    if (first == 0 || first == grid->bins)
+    if (first == 0 || first == grid->bins || all_keep_away(grid, problem, pair))
         return 0;
     double rise = own_rise(problem, bin);
     for (size_t s = 0; s < problem->states; s++)

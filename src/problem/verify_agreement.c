@@ -176,10 +176,10 @@ static void find_core(const struct comparison *of, const struct verify_section *
     for (size_t k = section->first - section->core; k < section->first; k++) {
         const double r = mf_rdf_bins_centre(of->bins, k % of->bins->count);
         const double value = of->value[k], wanted = fmax(0, target->value[k]);
-        const double count =
-            value_of_count(target->value, target->error, of->bins, k, section->first, end);
         if (!(value > section->threshold) && !(wanted > section->threshold))
             continue;
+        const double count =
+            value_of_count(target->value, target->error, of->bins, k, section->first, end);
         more += r * r * (value - fmax(wanted, section->threshold));
         variance += pow(r, 4) * (fmax(target_variance(target, true, k, value), value * count) +
                                  (1 + of->share) * own_variance(of, k, section->first, end));
