@@ -225,6 +225,15 @@ static void test_it_goes_on_with_measurements_of_less_noise(void **state) {
     assert_false(mf_genetic_optimiser.settled(run.state));
     assert_int_equal(run.round.count, POPULATION);
     assert_genes(row(&run, 0), elite);
+    // A checkpoint knows that patience has begun again.
+    struct run other = begin_patiently(5, 2);
+    struct memory_span from[OPTIMISER_MAX_SPANS], to[OPTIMISER_MAX_SPANS];
+    const size_t spans = mf_genetic_optimiser.spans(run.state, from);
+    assert_int_equal(mf_genetic_optimiser.spans(other.state, to), spans);
+    for (size_t k = 0; k < spans; k++)
+        memcpy(to[k].memory, from[k].memory, from[k].bytes);
+    assert_false(mf_genetic_optimiser.settled(other.state));
+    end(&other);
     // 2 now, not 1: what measures 1.5 is better.
     tell(&run, (double[]){2, 1.5, 9, 9, 9, 9});
     assert_int_equal(run.round.count, ROWS);
